@@ -1,0 +1,1 @@
+"""Pellucid: refractive and translucent matter in real time."""
