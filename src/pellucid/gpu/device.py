@@ -1,0 +1,268 @@
+"""The device: adapter choice, limits, buffers, textures and read-back; no physics."""
+
+from __future__ import annotations
+
+import os
+import platform
+import tempfile
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from pellucid.errors import NoAdapterError, PellucidError
+
+_REMEDIES = {
+    "Linux": "install a Vulkan driver; without a GPU the software one will do: "
+    "on Debian or Ubuntu `apt-get install mesa-vulkan-drivers libvulkan1`",
+    "Darwin": "Metal is part of macOS 10.13 and later; update the system, or leave the sandbox that hides the GPU",
+    "Windows": "install the graphics driver of the GPU's maker (DirectX 12 or Vulkan)",
+}
+_OPTIONAL_FEATURES = ("float32-filterable", "timestamp-query", "float32-blendable")
+_TEXEL: dict[str, tuple[type, int]] = {
+    "rgba32float": (np.float32, 4),
+    "rg32float": (np.float32, 2),
+    "r32float": (np.float32, 1),
+    "rgba16float": (np.float16, 4),
+    "rg16float": (np.float16, 2),
+    "r16float": (np.float16, 1),
+    "rgba8unorm": (np.uint8, 4),
+    "rgba8unorm-srgb": (np.uint8, 4),
+    "r8unorm": (np.uint8, 1),
+    "depth32float": (np.float32, 1),
+}
+
+
+def adapter_remedy() -> str:
+    """What to install on this operating system so that an adapter is found."""
+    return _REMEDIES.get(platform.system(), "install a Vulkan, Metal or DirectX 12 driver")
+
+
+def _private_runtime_folder() -> None:
+    """Vulkan loaders complain, or fail, when XDG_RUNTIME_DIR is unset: give them a folder of our own."""
+    if platform.system() == "Linux" and not os.environ.get("XDG_RUNTIME_DIR"):
+        folder = os.path.join(tempfile.gettempdir(), f"pellucid-runtime-{os.getuid()}")
+        os.makedirs(folder, mode=0o700, exist_ok=True)
+        os.environ["XDG_RUNTIME_DIR"] = folder
+
+
+def list_adapters() -> list[Any]:
+    """Every adapter of this machine, GPUs before software drivers; empty when there is none."""
+    _private_runtime_folder()
+    import wgpu
+
+    order = {"DiscreteGPU": 0, "IntegratedGPU": 1, "VirtualGPU": 2, "Unknown": 3, "CPU": 4}
+    adapters = [a for a in wgpu.gpu.enumerate_adapters_sync() if a.info.get("backend_type") != "OpenGL"]
+    return sorted(adapters, key=lambda a: order.get(str(a.info.get("adapter_type")), 3))
+
+
+@dataclass
+class Device:
+    """A WebGPU device with the few operations that the passes need.
+
+    Create one with `Device.create`; it is the only holder of GPU state that this package passes around.
+    """
+
+    wgpu: Any
+    info: dict[str, Any]
+    features: frozenset[str]
+    limits: dict[str, int]
+    _samplers: dict[Any, Any] = field(default_factory=dict)
+    cache: dict[Any, Any] = field(default_factory=dict)
+
+    @classmethod
+    def create(cls, software: bool = False) -> Device:
+        """Open the best adapter (or, with `software`, the CPU driver).
+
+        Raises
+        ------
+        NoAdapterError : when there is none; the message says what to install here.
+        """
+        adapters = list_adapters()
+        if software:
+            adapters = [a for a in adapters if a.info.get("adapter_type") == "CPU"]
+        if not adapters:
+            kind = "software Vulkan driver" if software else "graphics adapter"
+            raise NoAdapterError(f"no {kind} was found: {adapter_remedy()}")
+        adapter = adapters[0]
+        wanted = [f for f in _OPTIONAL_FEATURES if f in adapter.features]
+        limits = {
+            name: adapter.limits[name]
+            for name in ("max-storage-buffer-binding-size", "max-buffer-size", "max-texture-dimension-3d")
+            if name in adapter.limits
+        }
+        device = adapter.request_device_sync(required_features=wanted, required_limits=limits)
+        return cls(device, dict(adapter.info), frozenset(device.features), dict(device.limits))
+
+    @property
+    def is_software(self) -> bool:
+        """True when the CPU does the work."""
+        return self.info.get("adapter_type") == "CPU"
+
+    @property
+    def float32_filterable(self) -> bool:
+        """True when 32-bit float textures may be sampled with linear filtering."""
+        return "float32-filterable" in self.features
+
+    @property
+    def name(self) -> str:
+        return str(self.info.get("device", "unknown adapter"))
+
+    # ---- buffers -------------------------------------------------------------------------------------------
+
+    def buffer(self, data: np.ndarray | int, usage: str = "storage", label: str = "") -> Any:
+        """Create a buffer from an array, or of a number of bytes (zeroed).
+
+        usage : "storage", "uniform", "vertex", "index" or "indirect"; copies in both directions are always allowed.
+        """
+        import wgpu
+
+        flag = getattr(wgpu.BufferUsage, usage.upper())
+        if usage == "indirect":
+            flag |= wgpu.BufferUsage.STORAGE
+        flag |= wgpu.BufferUsage.COPY_SRC | wgpu.BufferUsage.COPY_DST
+        size = int(data) if isinstance(data, int | np.integer) else data.nbytes
+        self._check_buffer_size(size, usage, label)
+        out = self.wgpu.create_buffer(size=max(16, -(-size // 16) * 16), usage=flag, label=label)
+        if not isinstance(data, int | np.integer):
+            self.write(out, data)
+        return out
+
+    def _check_buffer_size(self, size: int, usage: str, label: str) -> None:
+        limit = self.limits["max-buffer-size"]
+        if usage == "storage":
+            limit = min(limit, self.limits["max-storage-buffer-binding-size"])
+        if size > limit:
+            raise PellucidError(
+                f"{label or 'buffer'}: {size / 2**20:.0f} MiB is more than this device's limit of {limit / 2**20:.0f} MiB"
+            )
+
+    def write(self, buffer: Any, data: np.ndarray, offset: int = 0) -> None:
+        """Copy an array into a buffer; sizes are padded to four bytes."""
+        raw = np.ascontiguousarray(data).view(np.uint8).reshape(-1) if data.dtype != object else data
+        if raw.size % 4:
+            raw = np.concatenate([raw, np.zeros(4 - raw.size % 4, np.uint8)])
+        if raw.size:
+            self.wgpu.queue.write_buffer(buffer, offset, raw)
+
+    def read(self, buffer: Any, dtype: Any, shape: Sequence[int] | int) -> np.ndarray:
+        """Copy a buffer back as an array of `dtype` and `shape`; waits until the work before it is done."""
+        shape = (shape,) if isinstance(shape, int) else tuple(shape)
+        dtype = np.dtype(dtype)
+        count = int(np.prod(shape))
+        if count == 0:
+            return np.zeros(shape, dtype)
+        size = -(-count * dtype.itemsize // 4) * 4
+        raw = self.wgpu.queue.read_buffer(buffer, 0, size)
+        return np.frombuffer(raw, dtype=dtype, count=count).reshape(shape).copy()
+
+    def wait(self) -> None:
+        """Block until everything submitted so far is done."""
+        if "fence" not in self.cache:
+            self.cache["fence"] = self.buffer(16, "storage", "fence")
+        self.wgpu.queue.read_buffer(self.cache["fence"], 0, 4)
+
+    # ---- textures ------------------------------------------------------------------------------------------
+
+    def texture(
+        self,
+        array: np.ndarray | None = None,
+        *,
+        size: Sequence[int] | None = None,
+        format: str = "rgba32float",
+        dimension: str = "2d",
+        layers: int = 1,
+        mips: int = 1,
+        usage: Iterable[str] = ("sample", "copy"),
+        label: str = "",
+    ) -> Any:
+        """Create a texture, filled from `array` when given.
+
+        array : (H, W, C), (L, H, W, C) when `layers` > 1, or (Z, Y, X[, C]) when dimension is "3d".
+        size : (width, height[, depth]) when there is no array.
+        usage : any of "sample", "copy", "render", "storage".
+        """
+        import wgpu
+
+        flags = {
+            "sample": wgpu.TextureUsage.TEXTURE_BINDING,
+            "copy": wgpu.TextureUsage.COPY_SRC | wgpu.TextureUsage.COPY_DST,
+            "render": wgpu.TextureUsage.RENDER_ATTACHMENT,
+            "storage": wgpu.TextureUsage.STORAGE_BINDING,
+        }
+        flag = flags["copy"]
+        for name in usage:
+            flag |= flags[name]
+        extent = self._extent(array, size, dimension, layers)
+        self._check_texture_size(extent, dimension, label)
+        texture = self.wgpu.create_texture(
+            size=extent, format=format, dimension=dimension, mip_level_count=mips, usage=flag, label=label
+        )
+        if array is not None:
+            self.write_texture(texture, array)
+        return texture
+
+    @staticmethod
+    def _extent(
+        array: np.ndarray | None, size: Sequence[int] | None, dimension: str, layers: int
+    ) -> tuple[int, int, int]:
+        if array is None:
+            assert size is not None
+            w, h, *rest = size
+            return int(w), int(h), int(rest[0]) if rest else layers
+        if dimension == "3d":
+            return array.shape[2], array.shape[1], array.shape[0]
+        if array.ndim == 4:
+            return array.shape[2], array.shape[1], array.shape[0]
+        return array.shape[1], array.shape[0], 1
+
+    def _check_texture_size(self, extent: tuple[int, int, int], dimension: str, label: str) -> None:
+        limit = self.limits[f"max-texture-dimension-{dimension}"]
+        checked = extent if dimension == "3d" else extent[:2]
+        if max(checked) > limit:
+            raise PellucidError(
+                f"{label or 'texture'}: {' x '.join(map(str, checked))} is more than this device's {limit} a side"
+            )
+
+    def write_texture(self, texture: Any, array: np.ndarray, layer: int = 0, mip: int = 0) -> None:
+        """Fill a texture (one layer and level of a 2D one, all of a 3D one or a stack of layers)."""
+        dtype, channels = _TEXEL[texture.format]
+        data: np.ndarray = np.ascontiguousarray(array, dtype=dtype)
+        is_stack = texture.dimension == "3d" or data.ndim == 4
+        depth, height, width = data.shape[:3] if is_stack else (1, *data.shape[:2])
+        self.wgpu.queue.write_texture(
+            {"texture": texture, "mip_level": mip, "origin": (0, 0, layer)},
+            data,
+            {"bytes_per_row": width * channels * data.itemsize, "rows_per_image": height},
+            (width, height, depth),
+        )
+
+    def read_texture(self, texture: Any, layer: int = 0, mip: int = 0) -> np.ndarray:
+        """Copy one layer and level of a 2D texture back as (H, W, C)."""
+        dtype, channels = _TEXEL[texture.format]
+        width, height = max(1, texture.width >> mip), max(1, texture.height >> mip)
+        row = width * channels * np.dtype(dtype).itemsize
+        padded = -(-row // 256) * 256
+        staging = self.buffer(padded * height, "storage", "texture read-back")
+        encoder = self.wgpu.create_command_encoder()
+        source = {"texture": texture, "mip_level": mip, "origin": (0, 0, layer)}
+        target = {"buffer": staging, "bytes_per_row": padded, "rows_per_image": height}
+        encoder.copy_texture_to_buffer(source, target, (width, height, 1))
+        self.wgpu.queue.submit([encoder.finish()])
+        rows = self.read(staging, np.uint8, (height, padded))[:, :row]
+        return np.ascontiguousarray(rows).view(dtype).reshape(height, width, channels)
+
+    def sampler(self, filter: str = "linear", address: Any = "clamp", compare: str | None = None) -> Any:
+        """A sampler; `address` is "clamp", "repeat" or one of them for each of u, v, w."""
+        modes = (address,) * 3 if isinstance(address, str) else tuple(address)
+        key = (filter, modes, compare)
+        if key not in self._samplers:
+            names = {"clamp": "clamp-to-edge", "repeat": "repeat", "mirror": "mirror-repeat"}
+            options: dict[str, Any] = {f"address_mode_{axis}": names[m] for axis, m in zip("uvw", modes, strict=True)}
+            if compare:
+                options["compare"] = compare
+            self._samplers[key] = self.wgpu.create_sampler(
+                mag_filter=filter, min_filter=filter, mipmap_filter=filter, **options
+            )
+        return self._samplers[key]
