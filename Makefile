@@ -5,7 +5,7 @@
 
 SHELL := /bin/bash
 PY := .venv/bin/python
-QUIET := --quiet --disable-pip-version-check
+QUIET := -qq --disable-pip-version-check
 OUT ?= out/demo
 SUITE ?= eikonal
 
