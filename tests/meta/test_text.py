@@ -16,15 +16,17 @@ WRITTEN = sorted(
     if path.suffix in {".py", ".wgsl", ".md", ".sh", ".toml"}
 )
 
-# [timonen2006, eq. 14; born1999, 1.5.1]: keys stand first in the brackets, or after a semicolon.
-KEY = re.compile(r"^([a-z][a-z-]*[12][0-9]{3}[a-z]?)(?:,|$)")
+# [timonen2006, eq. 14; born1999, 1.5.1] or (key iec61966): keys stand first in the brackets, or after a semicolon.
+KEY = re.compile(r"^([a-z][a-z-]*[0-9]{4,5}[a-z]?)(?:,|$)")
+NAMED_KEY = re.compile(r"\bkey ([a-z][a-z-]*[0-9]{4,5}[a-z]?)\b")
 UNFINISHED = re.compile(r"\b(TODO|FIXME|XXX|HACK)\b|\b(?i:placeholder)\b")
 EMPTY_NAMES = {"utils", "util", "helper", "helpers", "misc", "manager", "common", "stuff"}
 
 
 def cited_keys(text: str) -> set[str]:
     pieces = [piece.strip() for inside in re.findall(r"\[([^\[\]]*)\]", text) for piece in inside.split(";")]
-    return {match[1] for piece in pieces if (match := KEY.match(" ".join(piece.split())))}
+    keys = {match[1] for piece in pieces if (match := KEY.match(" ".join(piece.split())))}
+    return keys | set(NAMED_KEY.findall(text))
 
 
 def bibliography_keys() -> list[str]:
@@ -49,8 +51,8 @@ def test_the_laws_and_methods_cite_their_sources() -> None:
 
 
 def test_the_citation_pattern() -> None:
-    text = "[born1999, 1.5.1; timonen2006] [0, 1] [a, b] x[index2] [walter2007,\n eq. 33] [lambda; n]"
-    assert cited_keys(text) == {"born1999", "timonen2006", "walter2007"}
+    text = "[born1999, 1.5.1; timonen2006] [0, 1] [a, b] x[index2] [walter2007,\n eq. 33] [lambda; n] (key iec61966)"
+    assert cited_keys(text) == {"born1999", "timonen2006", "walter2007", "iec61966"}
 
 
 def test_nothing_is_left_for_later() -> None:
