@@ -1,0 +1,139 @@
+"""What a thing is made of, as far as light is concerned."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pellucid.errors import SceneError
+from pellucid.media.formulas import LINE_C_UM, LINE_D_UM, LINE_F_UM, Constant, Formula
+
+RGB_LAMBDA_NM: Final = (611.4, 549.1, 464.3)
+"""Wavelengths of the three channels; equal to ``optics.dispersion.RGB_LAMBDA_NM``, as a test holds."""
+
+CLEAR: Final = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Medium:
+    """A homogeneous, isotropic medium (of a crystal: one of its rays).
+
+    Parameters
+    ----------
+    name : canonical name.
+    kind : ``glass``, ``crystal``, ``gem``, ``liquid``, ``plastic``, ``gas`` or ``constant``.
+    source : where the index comes from; ``[key]`` resolves in ``docs/references.bib``.
+    formula : index as a function of the wavelength in micrometres.
+    valid_nm : range of vacuum wavelengths that the source covers, nm.
+    absorption_per_m : extinction by absorption at the three channels, 1/m, >= 0.
+    absorption_source : where the absorption comes from; ``representative`` says that it is an
+        estimate of ours for a typical specimen, not a measurement.
+    """
+
+    name: str
+    kind: str
+    source: str
+    formula: Formula
+    valid_nm: tuple[float, float]
+    absorption_per_m: tuple[float, float, float] = CLEAR
+    absorption_source: str = "treated as clear"
+
+    def n(self, lambda_nm: ArrayLike) -> NDArray[np.float64]:
+        """Refractive index at vacuum wavelengths in nm; same shape as the argument.
+
+        Raises
+        ------
+        SceneError : for a wavelength outside ``valid_nm``, which it names.
+        """
+        wavelengths = np.asarray(lambda_nm, float)
+        low, high = self.valid_nm
+        inside = (wavelengths >= low) & (wavelengths <= high)
+        if not np.all(inside):
+            worst = wavelengths[~inside].flat[0]
+            raise SceneError(
+                "lambda_nm",
+                f"{worst:g} nm is outside the range of {self.name}",
+                f"it is known from {low:g} to {high:g} nm",
+            )
+        return self.formula(wavelengths * 1e-3)
+
+    @property
+    def n_rgb(self) -> NDArray[np.float64]:
+        """Index at the three channels, (3,)."""
+        return self.n(RGB_LAMBDA_NM)
+
+    @property
+    def absorption_rgb_per_m(self) -> NDArray[np.float64]:
+        """Extinction by absorption at the three channels, 1/m, (3,); 0 when clear."""
+        return np.array(self.absorption_per_m, float)
+
+    @property
+    def n_d(self) -> float:
+        """Index at the helium d line, 587.6 nm."""
+        return float(self.n(LINE_D_UM * 1e3))
+
+    @property
+    def abbe(self) -> float:
+        """Abbe number, V = (n_d - 1)/(n_F - n_C) [born1999, 4.7.1]; infinite without dispersion."""
+        n_d, n_f, n_c = self.n(np.array([LINE_D_UM, LINE_F_UM, LINE_C_UM]) * 1e3)
+        return float((n_d - 1.0) / (n_f - n_c)) if n_f != n_c else math.inf
+
+    @property
+    def is_dispersive(self) -> bool:
+        """Whether the index depends on wavelength."""
+        return not isinstance(self.formula, Constant)
+
+    def with_absorption(self, rgb_per_m: Sequence[float], name: str | None = None) -> Medium:
+        """The same index with another colour: extinction at the three channels, 1/m.
+
+        Raises
+        ------
+        SceneError : for anything but three finite values >= 0.
+        """
+        return replace(
+            self,
+            name=name or f"{self.name}, coloured",
+            absorption_per_m=checked_absorption(rgb_per_m),
+            absorption_source="given by the user",
+        )
+
+
+def checked_absorption(rgb_per_m: Sequence[float]) -> tuple[float, float, float]:
+    """Three finite extinctions >= 0, 1/m, or a SceneError."""
+    values = np.asarray(rgb_per_m, float)
+    if values.shape != (3,) or not np.all(np.isfinite(values)) or np.any(values < 0.0):
+        raise SceneError(
+            "absorption_rgb_per_m", f"{rgb_per_m!r} is not three finite values >= 0", "give (r, g, b) in 1/m"
+        )
+    red, green, blue = values.tolist()
+    return red, green, blue
+
+
+def constant(n: float, absorption_rgb_per_m: Sequence[float] = CLEAR, name: str | None = None) -> Medium:
+    """A medium of one index at every wavelength.
+
+    Parameters
+    ----------
+    n : index, > 0.
+    absorption_rgb_per_m : extinction at the three channels, 1/m.
+    name : how it is called in messages; ``n = 1.5`` when not given.
+
+    Raises
+    ------
+    SceneError : when the index is not a finite number > 0, or the absorption is not three values >= 0.
+    """
+    if not math.isfinite(n) or n <= 0.0:
+        raise SceneError("n", f"{n!r} is not a refractive index", "give a finite number > 0")
+    return Medium(
+        name=name or f"n = {n:g}",
+        kind="constant",
+        source="given by the user",
+        formula=Constant(float(n)),
+        valid_nm=(0.0, math.inf),
+        absorption_per_m=checked_absorption(absorption_rgb_per_m),
+    )
