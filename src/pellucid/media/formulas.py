@@ -1,6 +1,6 @@
 """The dispersion formulas in which catalogues and papers state their measurements.
 
-Each is a frozen set of coefficients that, called with wavelengths in vacuum micrometres, gives
+Each is a frozen set of coefficients that, called with wavelengths in micrometres, gives
 the index. They hold what :mod:`pellucid.optics.dispersion` does not need for rendering: constants,
 any number of resonances, any exponent, and gases, whose n - 1 would drown in the rounding of n.
 """
@@ -22,7 +22,7 @@ LINE_B_UM, LINE_G_UM = 0.6867, 0.4308
 
 
 class Formula(Protocol):
-    """Maps vacuum wavelengths in micrometres to indices."""
+    """Maps wavelengths in micrometres to indices."""
 
     def __call__(self, lambda_um: Array) -> Array: ...
 

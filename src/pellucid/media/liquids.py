@@ -33,7 +33,7 @@ MEDIA: Final[tuple[Medium, ...]] = (
     Medium(
         "water",
         "liquid",
-        "distilled, 20 C [daimon2007]",
+        "distilled, 20 C, against vacuum [daimon2007]",
         _WATER,
         (182.0, 1129.0),
         _WATER_ABSORPTION,

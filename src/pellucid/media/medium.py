@@ -23,13 +23,16 @@ CLEAR: Final = (0.0, 0.0, 0.0)
 class Medium:
     """A homogeneous, isotropic medium (of a crystal: one of its rays).
 
+    Indices and wavelengths are as the source states them: solids and liquids against air, gases and
+    [daimon2007] against vacuum. The two differ by a factor of 1.00027, which no picture shows.
+
     Parameters
     ----------
     name : canonical name.
     kind : ``glass``, ``crystal``, ``gem``, ``liquid``, ``plastic``, ``gas`` or ``constant``.
     source : where the index comes from; ``[key]`` resolves in ``docs/references.bib``.
     formula : index as a function of the wavelength in micrometres.
-    valid_nm : range of vacuum wavelengths that the source covers, nm.
+    valid_nm : range of wavelengths that the source covers, nm.
     absorption_per_m : extinction by absorption at the three channels, 1/m, >= 0.
     absorption_source : where the absorption comes from; ``representative`` says that it is an
         estimate of ours for a typical specimen, not a measurement.
@@ -44,7 +47,7 @@ class Medium:
     absorption_source: str = "treated as clear"
 
     def n(self, lambda_nm: ArrayLike) -> NDArray[np.float64]:
-        """Refractive index at vacuum wavelengths in nm; same shape as the argument.
+        """Refractive index at wavelengths in nm; same shape as the argument.
 
         Raises
         ------

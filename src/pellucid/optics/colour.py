@@ -71,7 +71,7 @@ def srgb_decode(encoded: ArrayLike) -> Colour:
 
 
 def luminance(rgb: ArrayLike) -> Colour:
-    """Relative luminance of linear Rec.709, 0.2126 R + 0.7152 G + 0.0722 B [bt709, 3.2].
+    """Relative luminance of linear Rec.709, 0.2126 R + 0.7152 G + 0.0722 B [itu2015, 3.2].
 
     Parameters
     ----------

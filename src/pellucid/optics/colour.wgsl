@@ -13,7 +13,7 @@ fn srgb_decode(encoded: vec3f) -> vec3f {
     return select(curved, encoded / 12.92, encoded <= vec3f(0.04045));
 }
 
-// Relative luminance [bt709, 3.2]
+// Relative luminance [itu2015, 3.2]
 fn luminance(rgb: vec3f) -> f32 {
     return dot(rgb, vec3f(0.2126, 0.7152, 0.0722));
 }

@@ -1,6 +1,6 @@
 """The refractive index as a function of wavelength. Twin of ``dispersion.wgsl``.
 
-Wavelengths are vacuum wavelengths in nm; coefficients are in the micrometres of the literature.
+Wavelengths are in nm; coefficients are in the micrometres of the literature.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-// The refractive index as a function of wavelength (nm in vacuum; coefficients in micrometres).
+// The refractive index as a function of wavelength (nm; coefficients in micrometres).
 // Twin of dispersion.py.
 
 struct CauchyCoefficients {

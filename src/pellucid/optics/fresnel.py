@@ -7,8 +7,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-# Smallest denominator: turns 0/0 (equal indices at grazing incidence) into the limit, 0.
-_TINY = 1e-30
+# Smallest denominator: turns 0/0 (equal indices at grazing incidence) into the limit, 0. Larger than
+# cosines whose square underflows, also in the single precision of the twin
+_TINY = 1e-15
 
 
 class PolarisedReflectance(NamedTuple):
@@ -102,7 +103,7 @@ def fresnel_schlick(cos_i: ArrayLike, n_i: ArrayLike, n_t: ArrayLike) -> NDArray
 
     From the denser side the cosine is that of the transmitted angle, as the curve is a fit on
     the side of the lower index; seen so it is 1 under total reflection, as it must be.
-    The largest error over all angles is +0.059 for n = 1.333, +0.036 for 1.5 and -0.076 for 2.42. Equal
+    The largest error over all angles is +0.059 for n = 1.333, +0.036 for 1.5 and +0.076 for 2.42. Equal
     indices reflect nothing, but the curve says (1 - cos)^5: nearly matched media need the exact form.
 
     Parameters

@@ -6,8 +6,9 @@ struct PolarisedReflectance {
     p: f32,  // rp^2, electric field in the plane of incidence
 }
 
-// Smallest denominator: turns 0/0 (equal indices at grazing incidence) into the limit, 0
-const FRESNEL_TINY = 1e-30;
+// Smallest denominator: turns 0/0 (equal indices at grazing incidence) into the limit, 0. Larger than cosines
+// whose square underflows
+const FRESNEL_TINY = 1e-15;
 
 // Fresnel's formulae, rs^2 and rp^2 [born1999, 1.5.2 and 1.5.3]; both 1 under total reflection.
 // q = n_t cos_t keeps equal indices from reflecting anything, and needs no n_i/n_t,

@@ -10,7 +10,7 @@ def henyey_greenstein(cos_theta: ArrayLike, g: ArrayLike) -> NDArray[np.float64]
     """Henyey-Greenstein phase function [henyey1941, eq. 2], (1-g^2)/(4 pi (1+g^2-2g cos)^1.5).
 
     Its integral over the sphere is 1 and its mean cosine is g. The bracket is evaluated as
-    (1-g)^2 + 2g(1-cos), which does not cancel near the forward peak.
+    (1-|g|)^2 + 2|g|(1 -+ cos), which cancels at neither the forward nor the backward peak.
 
     Parameters
     ----------
@@ -22,5 +22,5 @@ def henyey_greenstein(cos_theta: ArrayLike, g: ArrayLike) -> NDArray[np.float64]
     (...), 1/sr.
     """
     cos_theta, g = np.asarray(cos_theta, float), np.asarray(g, float)
-    bracket = (1.0 - g) ** 2 + 2.0 * g * (1.0 - cos_theta)
+    bracket = (1.0 - np.abs(g)) ** 2 + 2.0 * np.abs(g) * (1.0 - np.sign(g) * cos_theta)
     return (1.0 - g) * (1.0 + g) / (4.0 * np.pi * bracket * np.sqrt(bracket))

@@ -1,0 +1,191 @@
+"""The twins agree: every WGSL function against its float64 Python, where they are most likely to differ.
+
+The Python side is given the arguments rounded to single precision, so that what is compared is the
+arithmetic. A tolerance is a number of single-precision roundings (EPS) of the largest term, times
+the conditioning of the formula where a comment says so.
+"""
+
+from __future__ import annotations
+
+import itertools
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from pellucid import optics
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from pellucid.gpu import Device
+
+pytest.importorskip("wgpu")
+
+EPS = 2.0**-24
+RNG = np.random.default_rng(11)
+
+
+def single(array: Any) -> np.ndarray:
+    """The values that single precision holds, in double."""
+    return np.asarray(array, np.float32).astype(np.float64)
+
+
+def interface_sweep() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Cosines and index pairs: grazing, normal, around the critical angle, equal and nearly equal indices."""
+    indices = [1.0, 1.0003, 1.333, 1.5, 2.417]
+    rows = []
+    for n_i, n_t in itertools.product(indices, indices):
+        cosines = [0.0, 1e-7, 1e-4, 1e-2, *np.linspace(0.05, 1.0, 20)]
+        if n_i > n_t:
+            limit = np.arcsin(n_t / n_i)
+            cosines += [np.cos(limit + e) for e in (-1e-2, -1e-4, 1e-4, 1e-2) if 0 < limit + e < np.pi / 2]
+        rows += [(c, n_i, n_t) for c in cosines]
+    rows += [(c, 1.5, 1.5 * (1 + 2.0**-20)) for c in (0.0, 1e-3, 0.5, 1.0)]
+    cos_i, n_i, n_t = single(np.array(rows)).T
+    return cos_i, n_i, n_t
+
+
+COS_I, N_I, N_T = interface_sweep()
+Q_SQUARED = (N_T - N_I) * (N_T + N_I) + (N_I * COS_I) ** 2
+
+
+def share_conditioning() -> np.ndarray:
+    """How far rounding q^2 by EPS of its terms moves q = n_t cos_t, relative to n_i; large at the critical angle."""
+    terms = np.abs((N_T - N_I) * (N_T + N_I)) + (N_I * COS_I) ** 2
+    return terms / np.maximum(np.sqrt(np.abs(Q_SQUARED)), np.sqrt(EPS * terms) + 1e-12)
+
+
+def decided() -> np.ndarray:
+    """Rows whose side of the critical angle survives rounding; the others may fall either way."""
+    terms = np.abs((N_T - N_I) * (N_T + N_I)) + (N_I * COS_I) ** 2
+    return np.abs(Q_SQUARED) >= 8 * EPS * terms
+
+
+def probed(device: Device, module: str, function: str, *arrays: Any) -> np.ndarray:
+    from pellucid.gpu.probe import probe
+
+    return probe(f"optics/{module}", function, *arrays, device=device)
+
+
+@pytest.mark.parametrize("function", ["fresnel_dielectric", "fresnel_schlick"])
+def test_reflectance(device: Device, function: str) -> None:
+    found = probed(device, "fresnel", function, COS_I, N_I, N_T)
+    expected = getattr(optics, function)(COS_I, N_I, N_T)
+    # dR/dq is at most 4/(n_i c) near the critical angle and dq is EPS times the conditioning.
+    slope = 4.0 / np.maximum(N_I * COS_I + np.sqrt(np.abs(Q_SQUARED)), 1e-6)
+    bound = 8 * EPS * (1.0 + slope * share_conditioning() * np.maximum(N_I, N_T))
+    sure = decided()
+    assert sure.sum() > 0.9 * sure.size
+    assert np.isfinite(found).all() and found.min() >= 0.0 and found.max() <= 1.0 + 4 * EPS
+    assert np.all(np.abs(found - expected)[sure] <= bound[sure])
+
+
+def test_polarised_reflectance(device: Device) -> None:
+    found = probed(device, "fresnel", "fresnel_polarised", COS_I, N_I, N_T)
+    expected = optics.fresnel_polarised(COS_I, N_I, N_T)
+    away = decided() & (np.abs(Q_SQUARED) > 1e-3)
+    np.testing.assert_allclose(found["s"][away], expected.s[away], atol=2e-5)
+    np.testing.assert_allclose(found["p"][away], expected.p[away], atol=2e-5)
+
+
+def test_equal_indices_reflect_nothing_and_grazing_is_finite(device: Device) -> None:
+    cosines = single([0.0, 1e-30, 1e-20, 1e-10, 1e-3, 1.0])
+    found = probed(device, "fresnel", "fresnel_dielectric", cosines, 1.5, 1.5)
+    np.testing.assert_allclose(found, 0.0, atol=1e-7)
+
+
+def test_refraction_and_reflection(device: Device) -> None:
+    azimuth = RNG.uniform(0, 2 * np.pi, COS_I.size)
+    sine = np.sqrt(1 - COS_I**2)
+    d = single(np.stack([sine * np.cos(azimuth), -COS_I, sine * np.sin(azimuth)], -1))
+    up = np.array([0.0, 1.0, 0.0])
+    found = probed(device, "snell", "refract", d, up, N_I, N_T)
+    expected = optics.refract(d, up, N_I, N_T)
+    sure = decided()
+    np.testing.assert_array_equal(found["valid"][sure], expected.valid[sure])
+    error = np.max(np.abs(found["direction"] - expected.direction), axis=-1)
+    assert np.all(error[sure] <= (16 * EPS * (1.0 + N_I / N_T + share_conditioning() / N_T))[sure])
+    assert np.isfinite(found["direction"]).all()
+    np.testing.assert_allclose(np.linalg.norm(found["direction"], axis=-1), 1.0, atol=1e-3)
+    np.testing.assert_array_equal(found["direction"][~found["valid"]], d[~found["valid"]])
+    np.testing.assert_allclose(probed(device, "snell", "reflect", d, up), optics.reflect(d, up), atol=4 * EPS)
+
+
+def test_equal_indices_do_not_bend(device: Device) -> None:
+    cosines = single([0.0, 1e-6, 1e-3, 0.5, 1.0])
+    d = single(np.stack([np.sqrt(1 - cosines**2), -cosines, 0 * cosines], -1))
+    found = probed(device, "snell", "refract", d, [0.0, 1.0, 0.0], 1.333, 1.333)
+    assert found["valid"].all()
+    np.testing.assert_allclose(found["direction"], d, atol=4 * EPS)
+
+
+NS = single(np.linspace(1.0, 2.6, 30))
+VECTORS = single(RNG.normal(size=(4, 64, 3)))
+SCALARS = single(RNG.uniform(0.1, 2.0, (4, 64)))
+LAMBDAS = single(np.linspace(400.0, 700.0, 64))
+LIGHT = single(np.abs(RNG.normal(size=(400, 3))) * 10.0 ** np.linspace(-4, 3, 400)[:, None])
+ENCODED = single(np.repeat(np.linspace(-0.1, 1.2, 300)[:, None], 3, axis=1))
+SELLMEIER = single([1.03961212, 0.231792344, 1.01046945]), single([0.00600069867, 0.0200179144, 103.560653])
+
+# module, function, arguments, relative and absolute tolerance
+CASES: list[tuple[str, str, tuple[Any, ...], float, float]] = [
+    # asin is an approximation on GPUs: WGSL grants it an absolute error of 2^-11
+    ("snell", "critical_angle", (single(1.5), NS), 0.0, 2.0**-11),
+    ("fresnel", "brewster_angle", (single(1.0), NS), 0.0, 1e-5),
+    ("fresnel", "normal_reflectance", (single(1.5), NS), 1e-5, 1e-7),
+    ("fresnel", "schlick", (single(0.04), single(np.linspace(0, 1, 50)), single(5.0)), 1e-5, 1e-7),
+    ("attenuation", "transmittance", (np.abs(VECTORS[0]), 5 * SCALARS[0]), 2e-6, 1e-7),
+    ("attenuation", "extinction_from_half_distance", (np.abs(VECTORS[0]), SCALARS[0]), 1e-6, 0.0),
+    ("attenuation", "water_colour", (VECTORS[0], VECTORS[1], np.abs(VECTORS[2]), SCALARS[0]), 1e-5, 2e-6),
+    ("phase", "henyey_greenstein", (single(np.linspace(-1, 1, 64)), single(np.linspace(-0.9, 0.9, 64))), 2e-6, 0.0),
+    ("phase", "henyey_greenstein", (single([1.0, -1.0, 0.999]), single([0.99, -0.999, 0.99])), 1e-5, 0.0),
+    ("dispersion", "cauchy", (LAMBDAS, single(1.5), single(0.004)), 1e-6, 0.0),
+    ("dispersion", "sellmeier", (LAMBDAS, *SELLMEIER), 1e-6, 0.0),
+    ("dispersion", "abbe_number", (single(1.5), single(1.75), single([1.25, 1.0])), 1e-6, 0.0),
+    ("eikonal", "drift", (VECTORS[0], VECTORS[1], SCALARS[0]), 1e-6, 1e-6),
+    ("eikonal", "kick", (VECTORS[0], SCALARS[0], VECTORS[1], SCALARS[1]), 1e-6, 2e-6),
+    ("eikonal", "euler_position", (VECTORS[0], VECTORS[1], SCALARS[0], SCALARS[1]), 1e-6, 1e-5),
+    ("eikonal", "euler_momentum", (VECTORS[0], VECTORS[1], SCALARS[0]), 1e-6, 1e-6),
+    ("colour", "srgb_encode", (ENCODED,), 1e-5, 1e-6),
+    ("colour", "srgb_decode", (ENCODED,), 1e-5, 1e-6),
+    ("colour", "luminance", (LIGHT,), 1e-6, 0.0),
+    ("colour", "tone_reinhard", (LIGHT,), 1e-6, 1e-7),
+    ("colour", "tone_aces", (LIGHT,), 2e-5, 2e-6),
+    # the curve's alternating coefficients sum to 40 times its value
+    ("colour", "tone_agx", (LIGHT,), 1e-4, 1e-5),
+    ("colour", "tone_khronos_neutral", (LIGHT,), 1e-5, 2e-6),
+]
+
+
+@pytest.mark.parametrize(
+    ("module", "function", "arguments", "rtol", "atol"), CASES, ids=lambda v: v if isinstance(v, str) else ""
+)
+def test_twins(
+    device: Device, module: str, function: str, arguments: tuple[Any, ...], rtol: float, atol: float
+) -> None:
+    python: Callable[..., np.ndarray] = getattr(optics, function)
+    np.testing.assert_allclose(probed(device, module, function, *arguments), python(*arguments), rtol=rtol, atol=atol)
+
+
+def test_cauchy_from_abbe(device: Device) -> None:
+    found = probed(device, "dispersion", "cauchy_from_abbe", single([1.5, 1.9]), single([64.0, 21.0]))
+    expected = optics.cauchy_from_abbe(single([1.5, 1.9]), single([64.0, 21.0]))
+    np.testing.assert_allclose(found["a"], expected.a, rtol=1e-6)
+    np.testing.assert_allclose(found["b_um2"], expected.b_um2, rtol=1e-5)
+
+
+def test_every_law_is_swept() -> None:
+    import ast
+    from pathlib import Path
+
+    folder = Path(optics.__file__).parent
+    laws = {
+        node.name
+        for path in folder.glob("*.py")
+        for node in ast.parse(path.read_text(encoding="utf-8")).body
+        if isinstance(node, ast.FunctionDef)
+    }
+    callbacks = {"leapfrog_step", "euler_step"}
+    here = Path(__file__).read_text(encoding="utf-8")
+    assert sorted(law for law in laws - callbacks if f'"{law}"' not in here) == []
