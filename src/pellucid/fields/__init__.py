@@ -1,0 +1,12 @@
+"""Data that the laws of light act on: volumes, distances, meshes on voxels, analytic shapes. NumPy only."""
+
+from pellucid.fields.distance import homogeneous_distance
+from pellucid.fields.gradient import central, sobel
+from pellucid.fields.smoothing import gaussian
+from pellucid.fields.surface_nets import surface_nets
+from pellucid.fields.volume import Region, Volume
+from pellucid.fields.voxelise import signed_distance
+
+__all__ = [
+    "Region", "Volume", "central", "gaussian", "homogeneous_distance", "signed_distance", "sobel", "surface_nets",
+]  # fmt: skip

@@ -1,0 +1,355 @@
+"""A box of space in which the refractive index varies: the data that the laws of light act on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from pellucid import media
+from pellucid.errors import SceneError
+from pellucid.media import Medium
+
+from .sampling import Extent, FieldFunction, box_edges, check_resolution, check_size, sampled, sampling
+
+#: Helium d line: the wavelength at which a field without channels is meant.
+LAMBDA_MAIN_NM = 587.56
+MOST_REGIONS = 4
+
+MediumLike = Medium | str | float
+Voxels = npt.NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """A body of one medium with a sharp surface.
+
+    Parameters
+    ----------
+    sdf : (Z, Y, X) signed distance to the surface in metres, negative inside.
+    medium : what fills it; a name, a `Medium` or a constant index.
+    name : for messages.
+    emission : radiance gained per metre, linear RGB, >= 0.
+    """
+
+    sdf: Voxels
+    medium: Medium
+    name: str = ""
+    emission: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "sdf", _voxels("sdf", self.sdf, channels=None))
+        object.__setattr__(self, "medium", media.resolve(self.medium))
+        light = np.asarray(self.emission, dtype=np.float64)
+        if light.shape != (3,) or not np.isfinite(light).all() or (light < 0.0).any():
+            raise SceneError("emission", f"is {self.emission}", "give three numbers, 0 or more")
+        object.__setattr__(self, "emission", tuple(float(v) for v in light))
+
+
+@dataclass(frozen=True, eq=False)
+class Volume:
+    """Optical fields on voxels, or up to four bodies with sharp surfaces, in a box about the origin.
+
+    Arrays are indexed [z, y, x], channels last, and are kept as contiguous read-only float32. The centre of
+    voxel i along x is at `(i + 0.5) * voxel_m[0] - extent_m[0] / 2`.
+
+    Parameters
+    ----------
+    extent_m : edges of the box (x, y, z), metres.
+    ambient_n : index outside.
+    delta_n : (Z, Y, X) index minus `ambient_n` at 587.56 nm, or (Z, Y, X, 3) at the RGB wavelengths. A
+        difference, because float32 cannot hold n of a gas well.
+    absorption, scattering : (Z, Y, X, 3) coefficients, 1/m, >= 0.
+    anisotropy : (Z, Y, X) mean cosine of scattering, in (-1, 1).
+    emission : (Z, Y, X, 3) radiance gained per metre, >= 0.
+    opaque : (Z, Y, X, 4) linear RGB and coverage 0 to 1 of opaque matter.
+    regions : bodies; the **first** whose distance is negative owns a point.
+
+    Raises
+    ------
+    SceneError
+        Names the field that is wrong.
+    """
+
+    extent_m: tuple[float, float, float]
+    ambient_n: float = 1.0
+    delta_n: Voxels | None = None
+    absorption: Voxels | None = None
+    scattering: Voxels | None = None
+    anisotropy: Voxels | None = None
+    emission: Voxels | None = None
+    opaque: Voxels | None = None
+    regions: tuple[Region, ...] = ()
+    shape: tuple[int, int, int] = field(init=False)
+
+    def __post_init__(self) -> None:
+        put = object.__setattr__
+        put(self, "ambient_n", _index("ambient_n", self.ambient_n))
+        put(self, "regions", tuple(self.regions))
+        put(self, "shape", _common_shape(self))
+        put(self, "extent_m", box_edges(self.extent_m, self.shape))
+        for name, channels in _CHANNELS.items():
+            values = getattr(self, name)
+            if values is not None:
+                put(self, name, _voxels(name, values, channels, self.shape))
+        _check_ranges(self)
+
+    @property
+    def voxel_m(self) -> tuple[float, float, float]:
+        """Voxel edges (x, y, z), metres."""
+        z, y, x = self.shape
+        return self.extent_m[0] / x, self.extent_m[1] / y, self.extent_m[2] / z
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of all arrays."""
+        arrays = [getattr(self, name) for name in _CHANNELS] + [r.sdf for r in self.regions]
+        return sum(a.nbytes for a in arrays if a is not None)
+
+    @property
+    def is_dispersive(self) -> bool:
+        """Whether the index differs between the colour channels."""
+        by_channel = self.delta_n is not None and self.delta_n.ndim == 4
+        return by_channel or any(r.medium.is_dispersive for r in self.regions)
+
+    @classmethod
+    def from_array(
+        cls,
+        n: npt.ArrayLike,
+        extent_m: Extent,
+        ambient_n: float = 1.0,
+        absorption: npt.ArrayLike | None = None,
+        scattering: npt.ArrayLike | None = None,
+        anisotropy: npt.ArrayLike | None = None,
+        emission: npt.ArrayLike | None = None,
+        opaque: npt.ArrayLike | None = None,
+    ) -> Volume:
+        """A volume from the refractive index of every voxel.
+
+        Parameters
+        ----------
+        n : (Z, Y, X) index > 0, or (Z, Y, X, 3) one for each colour channel.
+        extent_m : edges (x, y, z), or one number: the longest edge, with cubic voxels.
+        others : as in `Volume`.
+        """
+        index = np.asarray(n)
+        if index.ndim not in (3, 4) or (index.ndim == 4 and index.shape[3] != 3):
+            raise SceneError("n", f"has shape {index.shape}", "give (Z, Y, X) or (Z, Y, X, 3)")
+        check_size("n", index.shape[:3])
+        if not np.isfinite(index).all():
+            raise SceneError("n", "has values that are not finite")
+        if float(index.min()) <= 0.0:
+            raise SceneError("n", f"has {float(index.min()):g}", "a refractive index is above 0")
+        ambient = _index("ambient_n", ambient_n)
+        # In double precision: n - 1 of a gas would lose most of its digits in float32.
+        delta = (index.astype(np.float64) - ambient).astype(np.float32)
+        fields = {
+            "absorption": absorption,
+            "scattering": scattering,
+            "anisotropy": anisotropy,
+            "emission": emission,
+            "opaque": opaque,
+        }
+        return cls(extent_m, ambient, delta, **fields)  # type: ignore[arg-type]
+
+    @classmethod
+    def from_function(cls, f: FieldFunction, resolution: int, extent_m: Extent, ambient_n: float = 1.0) -> Volume:
+        """A volume from the index as a function of place.
+
+        Parameters
+        ----------
+        f : `f(x, y, z)` of arrays in metres from the centre, giving the index.
+        resolution : voxels along the longest edge.
+        extent_m : edges (x, y, z), or one number for a cube.
+        """
+        shape, extent = sampling(resolution, extent_m)
+        return cls.from_array(sampled("f", f, shape, extent), extent, ambient_n)
+
+    @classmethod
+    def from_sdf(
+        cls, f: FieldFunction, medium: MediumLike, resolution: int, extent_m: Extent, ambient_n: float = 1.0
+    ) -> Volume:
+        """One body from its signed distance `f(x, y, z)` in metres, negative inside; else as `from_function`."""
+        return cls.from_regions([(f, medium)], resolution, extent_m, ambient_n)
+
+    @classmethod
+    def from_regions(
+        cls,
+        regions: Sequence[tuple[FieldFunction | npt.ArrayLike, MediumLike]],
+        resolution: int,
+        extent_m: Extent,
+        ambient_n: float = 1.0,
+    ) -> Volume:
+        """Several bodies in one box; where they overlap the first has priority.
+
+        Parameters
+        ----------
+        regions : up to four pairs of a signed distance (function of x, y, z, or array) and a medium.
+        resolution, extent_m : as in `from_function`.
+        """
+        shape, extent = sampling(resolution, extent_m)
+        bodies = []
+        for i, (distance, medium) in enumerate(regions):
+            name = f"regions[{i}].sdf"
+            values = sampled(name, distance, shape, extent) if callable(distance) else distance
+            bodies.append(Region(_voxels(name, values, None, shape), media.resolve(medium)))
+        return cls(extent, ambient_n, regions=tuple(bodies))  # type: ignore[arg-type]
+
+    @classmethod
+    def from_mesh(
+        cls,
+        vertices: npt.ArrayLike,
+        faces: npt.ArrayLike,
+        medium: MediumLike,
+        resolution: int,
+        margin_voxels: int = 3,
+        ambient_n: float = 1.0,
+        progress: Callable[[float], None] | None = None,
+    ) -> tuple[Volume, tuple[float, float, float]]:
+        """A body bounded by a triangle mesh, in cubic voxels around it (see `voxelise.signed_distance`).
+
+        Parameters
+        ----------
+        vertices : (V, 3) metres.
+        faces : (F, 3).
+        resolution : voxels along the longest edge, margins included.
+        margin_voxels : empty voxels around the mesh on each side.
+
+        Returns
+        -------
+        The volume, and where its centre lies in the mesh's coordinates (x, y, z).
+        """
+        from .voxelise import cleaned, signed_distance
+
+        points, triangles = cleaned(vertices, faces)
+        used = points[np.unique(triangles)]
+        low, high = used.min(axis=0), used.max(axis=0)
+        check_resolution(resolution)
+        if resolution <= 2 * margin_voxels + 1 or margin_voxels < 0:
+            raise SceneError("resolution", f"is {resolution} with margins of {margin_voxels} voxels")
+        voxel = float((high - low).max()) / (resolution - 2 * margin_voxels)
+        count = np.ceil((high - low) / voxel - 1e-9).astype(int) + 2 * margin_voxels
+        centre = 0.5 * (low + high)
+        shape = (int(count[2]), int(count[1]), int(count[0]))
+        sdf = signed_distance(points, triangles, shape, centre - 0.5 * (count - 1) * voxel, voxel, progress)
+        if not (sdf < 0.0).any():
+            raise SceneError("mesh", "encloses no voxel centre", "close it, thicken it, or use a finer resolution")
+        x, y, z = (float(c) * voxel for c in count)
+        volume = cls((x, y, z), ambient_n, regions=(Region(sdf, media.resolve(medium)),))
+        return volume, (float(centre[0]), float(centre[1]), float(centre[2]))
+
+    def rasterised(self) -> Volume:
+        """The same matter as voxel fields, for the smooth boundary model; a volume of arrays is returned as is.
+
+        A voxel is covered by `clamp(0.5 - sdf / h, 0, 1)`, h the mean voxel edge: the covered share of a cube cut by a
+        plane parallel to a face. Of what earlier regions leave uncovered, each takes its share, so two
+        bodies that touch leave no gap.
+        """
+        if not self.regions:
+            return self
+        channels = 3 if self.is_dispersive else 1
+        delta = np.zeros((*self.shape, channels))
+        absorption, emission = np.zeros((*self.shape, 3)), np.zeros((*self.shape, 3))
+        free = np.ones(self.shape)
+        for region in self.regions:
+            covered = np.clip(0.5 - region.sdf.astype(np.float64) / float(np.mean(self.voxel_m)), 0.0, 1.0)
+            share = np.minimum(covered, free)[..., None]
+            free -= share[..., 0]
+            delta += share * (_region_index(region.medium, channels) - self.ambient_n)
+            absorption += share * np.asarray(region.medium.absorption_rgb_per_m)
+            emission += share * np.asarray(region.emission)
+        return Volume(
+            self.extent_m,
+            self.ambient_n,
+            delta_n=(delta if channels == 3 else delta[..., 0]).astype(np.float32),
+            absorption=absorption.astype(np.float32) if absorption.any() else None,
+            emission=emission.astype(np.float32) if emission.any() else None,
+        )
+
+    def replace(self, **changes: Any) -> Volume:
+        """A copy with some fields changed."""
+        return replace(self, **changes)
+
+
+_CHANNELS: dict[str, int | None] = {
+    "delta_n": -1,
+    "absorption": 3,
+    "scattering": 3,
+    "anisotropy": None,
+    "emission": 3,
+    "opaque": 4,
+}
+
+
+def _region_index(medium: Medium, channels: int) -> npt.NDArray[np.float64]:
+    return np.asarray(medium.n_rgb if channels == 3 else [float(medium.n(LAMBDA_MAIN_NM))], dtype=np.float64)
+
+
+def _common_shape(volume: Volume) -> tuple[int, int, int]:
+    if len(volume.regions) > MOST_REGIONS:
+        raise SceneError("regions", f"has {len(volume.regions)} bodies", f"at most {MOST_REGIONS} are possible")
+    first = volume.regions[0].sdf if volume.regions else volume.delta_n
+    if first is None:
+        raise SceneError("delta_n", "is missing, and there are no regions", "give one of them")
+    if volume.regions and volume.delta_n is not None:
+        raise SceneError("delta_n", "is given together with regions", "give one of them")
+    shape = np.shape(first)[:3]
+    check_size("regions[0].sdf" if volume.regions else "delta_n", shape)
+    for i, region in enumerate(volume.regions):
+        if region.sdf.shape != shape:
+            raise SceneError(f"regions[{i}].sdf", f"has shape {region.sdf.shape}, the first has {shape}")
+    z, y, x = (int(n) for n in shape)
+    return z, y, x
+
+
+def _voxels(
+    name: str, values: npt.ArrayLike, channels: int | None, shape: tuple[int, int, int] | None = None
+) -> Voxels:
+    """A checked, contiguous, read-only float32 copy. `channels`: None for a scalar, -1 for a scalar or three."""
+    array = np.asarray(values)
+    if not (np.issubdtype(array.dtype, np.number) or array.dtype == bool) or np.iscomplexobj(array):
+        raise SceneError(name, f"is of type {array.dtype}", "give real numbers")
+    allowed: list[tuple[int, ...]] = [(), (3,)] if channels == -1 else [() if channels is None else (channels,)]
+    if array.ndim < 3 or array.shape[3:] not in allowed or (shape is not None and array.shape[:3] != shape):
+        where = "Z, Y, X" if shape is None else ", ".join(map(str, shape))
+        wanted = " or ".join(f"({', '.join([where, *map(str, a)])})" for a in allowed)
+        raise SceneError(name, f"has shape {array.shape}", f"give {wanted}")
+    check_size(name, array.shape[:3])
+    if array.dtype == np.float32 and array.flags.c_contiguous and not array.flags.writeable:
+        kept = array
+    else:
+        kept = np.array(array, dtype=np.float32, order="C")
+        kept.flags.writeable = False
+    if not np.isfinite(kept).all():
+        raise SceneError(name, f"has {int((~np.isfinite(kept)).sum())} values that are not finite")
+    return kept
+
+
+def _check_ranges(volume: Volume) -> None:
+    if volume.delta_n is not None and float(volume.delta_n.min()) + volume.ambient_n <= 0.0:
+        raise SceneError("delta_n", "makes the index 0 or less")
+    for name in ("absorption", "scattering", "emission"):
+        values = getattr(volume, name)
+        if values is not None and float(values.min()) < 0.0:
+            raise SceneError(name, f"has {float(values.min()):g}", "use 0 or more")
+    if volume.anisotropy is not None and float(np.abs(volume.anisotropy).max()) >= 1.0:
+        raise SceneError("anisotropy", "has values outside (-1, 1)", "it is a mean cosine")
+    if volume.opaque is not None:
+        coverage = volume.opaque[..., 3]
+        if float(coverage.min()) < 0.0 or float(coverage.max()) > 1.0:
+            raise SceneError("opaque", "has a coverage outside 0 to 1")
+        if float(volume.opaque.min()) < 0.0:
+            raise SceneError("opaque", "has a negative colour")
+
+
+def _index(name: str, value: float) -> float:
+    try:
+        index = float(value)
+    except (TypeError, ValueError):
+        raise SceneError(name, f"is {value!r}", "give a number") from None
+    if not (np.isfinite(index) and index > 0.0):
+        raise SceneError(name, f"is {index:g}", "a refractive index is above 0")
+    return index

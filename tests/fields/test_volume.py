@@ -1,0 +1,160 @@
+"""Volumes: what is kept, what is refused, and how bodies become voxels."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import trimesh
+
+from pellucid import media
+from pellucid.errors import SceneError
+from pellucid.fields.volume import Region, Volume
+
+
+def ball(radius):
+    return lambda x, y, z: np.sqrt(x * x + y * y + z * z) - radius
+
+
+def test_index_of_gas_survives_as_a_difference():
+    n = 1.0 + 1e-4 * np.linspace(1.0, 1.001, 8)[None, None, :] * np.ones((2, 3, 8))
+    volume = Volume.from_array(n, 1.0)
+    np.testing.assert_allclose(volume.delta_n, n - 1.0, rtol=1e-7)
+    assert volume.extent_m == (1.0, 0.375, 0.25)
+    assert volume.voxel_m == pytest.approx((0.125,) * 3)
+
+
+def test_arrays_are_kept_read_only_and_contiguous():
+    n = np.full((4, 4, 4), 1.5).transpose(2, 1, 0)
+    volume = Volume.from_array(n, 1.0, absorption=np.ones((4, 4, 4, 3)))
+    for values in (volume.delta_n, volume.absorption):
+        assert values.dtype == np.float32 and values.flags.c_contiguous and not values.flags.writeable
+    assert volume.nbytes == 64 * 4 * 4
+    n[:] = 2.0
+    assert (volume.delta_n == 0.5).all()
+
+
+def test_function_is_sampled_at_voxel_centres_in_xyz():
+    volume = Volume.from_function(lambda x, y, z: 2 + x + 10 * y + 100 * z, 4, (0.04, 0.02, 0.01), 2.0)
+    assert volume.shape == (1, 2, 4)
+    assert volume.delta_n[0, 1, 3] == pytest.approx(0.015 + 10 * 0.005, rel=1e-6)
+
+
+def test_one_value_a_channel_is_dispersive():
+    n = np.full((2, 2, 2, 3), [1.51, 1.52, 1.53])
+    assert Volume.from_array(n, 1.0).is_dispersive
+    assert not Volume.from_array(n[..., 0], 1.0).is_dispersive
+
+
+def test_medium_may_be_a_name_a_medium_or_a_number():
+    f = ball(0.3)
+    for medium in ("N-BK7", media.get("N-BK7"), 1.5):
+        assert Volume.from_sdf(f, medium, 8, 1.0).regions[0].medium == media.resolve(medium)
+    assert Volume.from_sdf(f, "N-BK7", 8, 1.0).is_dispersive
+
+
+def test_rasterised_ball_has_the_volume_of_a_ball():
+    volume = Volume.from_sdf(ball(0.4), media.constant(1.5, (1.0, 2.0, 3.0)), 48, 1.0).rasterised()
+    filled = volume.delta_n.astype(float).mean() / 0.5
+    # Coverage by a plane parallel to a face errs by curvature and slant, both of second order in the voxel.
+    assert filled == pytest.approx(4 / 3 * np.pi * 0.4**3, rel=2e-3)
+    np.testing.assert_allclose(volume.absorption[24, 24, 24], [1, 2, 3])
+    assert volume.rasterised() is volume
+
+
+def test_rasterised_bodies_in_contact_leave_no_gap():
+    def left(x, y, z):
+        return x - 0.013
+
+    def right(x, y, z):
+        return -x + 0.008
+
+    volume = Volume.from_regions([(left, 1.5), (right, 1.5)], 16, 1.0).rasterised()
+    np.testing.assert_allclose(volume.delta_n, 0.5, atol=1e-6)
+
+
+def test_rasterised_follows_priority_and_dispersion():
+    inner, outer = ball(0.2), ball(0.4)
+    volume = Volume.from_regions([(inner, 1.0), (outer, "N-BK7")], 32, 1.0)
+    smooth = volume.rasterised()
+    assert smooth.delta_n.shape == (32, 32, 32, 3)
+    np.testing.assert_allclose(smooth.delta_n[16, 16, 16], 0.0, atol=1e-7)
+    np.testing.assert_allclose(smooth.delta_n[16, 16, 25], media.get("N-BK7").n_rgb - 1.0, rtol=1e-6)
+
+
+def test_rasterised_keeps_emission():
+    sdf = Volume.from_sdf(ball(0.4), 1.2, 16, 1.0).regions[0].sdf
+    volume = Volume((1, 1, 1), regions=(Region(sdf, 1.2, emission=(1, 2, 3)),)).rasterised()
+    np.testing.assert_allclose(volume.emission[8, 8, 8], [1, 2, 3])
+    assert volume.absorption is None
+
+
+def test_mesh_is_placed_about_its_centre():
+    mesh = trimesh.creation.box(extents=(0.4, 0.2, 0.1)).apply_translation([1.0, 2.0, 3.0])
+    volume, centre = Volume.from_mesh(mesh.vertices, mesh.faces, 1.5, 26)
+    assert centre == pytest.approx((1.0, 2.0, 3.0))
+    assert volume.shape == (11, 16, 26)
+    assert np.ptp(volume.voxel_m) < 1e-12
+    assert (volume.regions[0].sdf < 0).sum() * np.prod(volume.voxel_m) == pytest.approx(0.008, rel=1e-6)
+
+
+def test_sheet_without_inside_is_refused():
+    with pytest.raises(SceneError, match="encloses no"):
+        Volume.from_mesh(np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]]), [[0, 1, 2], [0, 2, 3]], 1.5, 16)
+
+
+FINE = np.full((4, 4, 4), 1.5)
+WITH_NAN = FINE.copy()
+WITH_NAN[1, 2, 3] = np.nan
+
+
+@pytest.mark.parametrize(
+    ("arguments", "field"),
+    [
+        ({"n": WITH_NAN}, "n"),
+        ({"n": FINE * 0}, "n"),
+        ({"n": FINE[0]}, "n"),
+        ({"n": np.ones((2, 2, 2, 2))}, "n"),
+        ({"n": np.ones((0, 2, 2))}, "n"),
+        ({"n": np.broadcast_to(np.float32(1), (2048, 1024, 1024))}, "n"),
+        ({"extent_m": 0.0}, "extent_m"),
+        ({"extent_m": (1, 2)}, "extent_m"),
+        ({"extent_m": (1, -2, 1)}, "extent_m"),
+        ({"extent_m": float("inf")}, "extent_m"),
+        ({"extent_m": "wide"}, "extent_m"),
+        ({"ambient_n": 0.0}, "ambient_n"),
+        ({"ambient_n": None}, "ambient_n"),
+        ({"absorption": -np.ones((4, 4, 4, 3))}, "absorption"),
+        ({"absorption": np.ones((4, 4, 4))}, "absorption"),
+        ({"absorption": np.ones((4, 4, 5, 3))}, "absorption"),
+        ({"scattering": np.full((4, 4, 4, 3), np.inf)}, "scattering"),
+        ({"anisotropy": np.ones((4, 4, 4))}, "anisotropy"),
+        ({"anisotropy": np.zeros((4, 4, 4, 1))}, "anisotropy"),
+        ({"emission": -np.ones((4, 4, 4, 3))}, "emission"),
+        ({"opaque": np.full((4, 4, 4, 4), 2.0)}, "opaque"),
+        ({"opaque": np.ones((4, 4, 4, 3))}, "opaque"),
+        ({"absorption": np.full((4, 4, 4, 3), "x")}, "absorption"),
+    ],
+)
+def test_bad_fields_are_refused_by_name(arguments, field):
+    with pytest.raises(SceneError) as caught:
+        Volume.from_array(**({"n": FINE, "extent_m": 1.0} | arguments))
+    assert caught.value.field == field
+
+
+@pytest.mark.parametrize("resolution", [0, 1, -3, 2.5, True, 100000, 2000])
+def test_bad_resolution_is_refused_before_memory_is_taken(resolution):
+    with pytest.raises(SceneError, match="resolution"):
+        Volume.from_function(lambda x, y, z: 1.0 + 0 * x, resolution, 1.0)
+
+
+def test_bad_regions_are_refused():
+    with pytest.raises(SceneError, match="delta_n"):
+        Volume((1, 1, 1))
+    with pytest.raises(SceneError, match="at most 4"):
+        Volume.from_regions([(ball(0.1), 1.5)] * 5, 8, 1.0)
+    with pytest.raises(SceneError, match=r"regions\[0\]\.sdf"):
+        Volume.from_regions([(lambda x, y, z: np.zeros(7), 1.5)], 8, 1.0)
+    with pytest.raises(SceneError, match=r"regions\[1\]\.sdf"):
+        Volume.from_regions([(ball(0.1), 1.5), (np.zeros((3, 3, 3)), 1.5)], 8, 1.0)
+    with pytest.raises(SceneError):
+        Volume.from_sdf(ball(0.1), "no such glass", 8, 1.0)
