@@ -1,0 +1,27 @@
+"""What a user describes: camera, lights, surroundings and things, with units and ranges; no GPU."""
+
+from pellucid.scene.camera import Camera
+from pellucid.scene.environment import Environment
+from pellucid.scene.files import load_scene, save_scene
+from pellucid.scene.lights import AreaLight, DirectionalLight, PointLight
+from pellucid.scene.mesh import Mesh
+from pellucid.scene.placement import Light, SceneObject
+from pellucid.scene.quality import Quality
+from pellucid.scene.refractive_volume import RefractiveVolume
+from pellucid.scene.scene import Scene
+
+__all__ = [
+    "AreaLight",
+    "Camera",
+    "DirectionalLight",
+    "Environment",
+    "Light",
+    "Mesh",
+    "PointLight",
+    "Quality",
+    "RefractiveVolume",
+    "Scene",
+    "SceneObject",
+    "load_scene",
+    "save_scene",
+]

@@ -1,0 +1,189 @@
+"""Triangle meshes from OBJ, PLY, STL and glTF, read through trimesh and checked before anyone uses them."""
+
+from __future__ import annotations
+
+import logging
+import re
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pellucid.errors import AssetError
+from pellucid.io.files import existing_file, suffix_of
+from pellucid.io.images import srgb_to_linear
+
+READABLE = (".obj", ".ply", ".stl", ".glb", ".gltf")
+MAX_FACES = 20_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class MeshData:
+    """Triangles as a file states them, in the file's own coordinates.
+
+    Attributes
+    ----------
+    vertices : (V, 3) float64, metres (the number in the file is taken as metres).
+    faces : (F, 3) int32 rows of `vertices`, counter-clockwise seen from outside.
+    normals : (V, 3) float32 unit vectors, or None when the file has none.
+    uvs : (V, 2) float32, (0, 0) at the lower left of the map, or None.
+    base_color : (3,) linear Rec.709 of the material, or None. When several materials are merged it is
+        their mean by number of faces.
+    base_color_map : (H, W, 3 or 4) float32 linear, row 0 at the top, or None. Kept only when the whole
+        mesh shares one map, and only when Pillow is installed, through which trimesh reads maps.
+    name : the file's stem.
+    """
+
+    vertices: np.ndarray
+    faces: np.ndarray
+    normals: np.ndarray | None = None
+    uvs: np.ndarray | None = None
+    base_color: tuple[float, float, float] | None = None
+    base_color_map: np.ndarray | None = None
+    name: str = ""
+
+
+def read_mesh(path: str | PathLike[str]) -> MeshData:
+    """Read a mesh; the geometries of a file that holds several are placed as it says and merged.
+
+    Parameters
+    ----------
+    path : .obj, .ply, .stl, .glb or .gltf.
+
+    Raises
+    ------
+    AssetError : missing, empty, truncated, not a mesh, no faces, coordinates that are not finite,
+        faces that point outside the vertices, zero extent, more than 20 million faces.
+    """
+    file = existing_file(path)
+    suffix = suffix_of(file, READABLE, "read as a mesh")
+    _judge_header(file, suffix)
+    parts = _triangle_parts(file, suffix)
+    if not parts:
+        raise AssetError(file, "holds no faces", "export triangles, not only points, lines or an empty scene")
+    mesh = _merged(parts, file.stem)
+    _judge(file, mesh)
+    return mesh
+
+
+def _judge_header(file: Path, suffix: str) -> None:
+    """Refuses what the header already shows to be too large or cut short, before it is loaded."""
+    with file.open("rb") as stream:
+        head = stream.read(4096)
+    if suffix == ".ply":
+        if not head.startswith(b"ply"):
+            raise AssetError(file, "is not a PLY file: it does not begin with 'ply'", "export it again")
+        announced = re.search(rb"element\s+face\s+(\d+)", head)
+        _refuse_many_faces(file, int(announced[1]) if announced else 0)
+    if suffix == ".stl" and not head.lstrip().lower().startswith(b"solid"):
+        if len(head) < 84:
+            raise AssetError(file, "is truncated: shorter than an STL header", "export or copy it again")
+        faces = struct.unpack_from("<I", head, 80)[0]
+        if file.stat().st_size < 84 + 50 * faces:
+            raise AssetError(file, f"is truncated or not an STL file: {faces} faces announced", "export it again")
+        _refuse_many_faces(file, faces)
+
+
+def _refuse_many_faces(file: Path, faces: int) -> None:
+    if faces > MAX_FACES:
+        raise AssetError(file, f"has {faces:,} faces, more than {MAX_FACES:,}", "decimate it first")
+
+
+def _triangle_parts(file: Path, suffix: str) -> list[Any]:
+    """The trimesh geometries of the file that have faces, each moved to its place in the file's scene."""
+    import trimesh
+
+    log = logging.getLogger("trimesh")
+    was_disabled, log.disabled = log.disabled, True  # what matters is raised below; the rest only alarms
+    try:
+        loaded = trimesh.load_scene(file, process=False)
+        parts = [part for part in loaded.dump() if isinstance(part, trimesh.Trimesh) and len(part.faces)]
+        if suffix == ".stl":  # the format has no shared vertices at all
+            for part in parts:
+                part.merge_vertices()
+    except Exception as error:  # trimesh lets whatever its parsers meet come through
+        reason = f"is truncated or not a {suffix[1:].upper()} mesh: {type(error).__name__}: {error}"
+        raise AssetError(file, reason, "open and export it again in a 3-D program") from error
+    finally:
+        log.disabled = was_disabled
+    return parts
+
+
+def _merged(parts: Sequence[Any], name: str) -> MeshData:
+    offsets = np.cumsum([0] + [len(part.vertices) for part in parts[:-1]])
+    colors, maps = zip(*(_material(part) for part in parts), strict=True)
+    weights = [len(part.faces) for part in parts]
+    known = [(color, weight) for color, weight in zip(colors, weights, strict=True) if color is not None]
+    base = np.average([c for c, _ in known], axis=0, weights=[w for _, w in known]) if known else None
+    shared = maps[0] if all(image is maps[0] for image in maps) else None
+    return MeshData(
+        vertices=np.concatenate([np.asarray(part.vertices, np.float64) for part in parts]),
+        faces=np.concatenate([np.asarray(p.faces) + o for p, o in zip(parts, offsets, strict=True)]).astype(np.int32),
+        normals=_stacked([_stored_normals(part) for part in parts]),
+        uvs=_stacked([_stored_uvs(part) for part in parts]),
+        base_color=None if base is None else (float(base[0]), float(base[1]), float(base[2])),
+        base_color_map=None if shared is None else _linear_map(shared),
+        name=name,
+    )
+
+
+def _stacked(arrays: Sequence[np.ndarray | None]) -> np.ndarray | None:
+    present = [array for array in arrays if array is not None]
+    return np.concatenate(present).astype(np.float32) if len(present) == len(arrays) else None
+
+
+def _stored_normals(part: Any) -> np.ndarray | None:
+    """Vertex normals that came from the file; trimesh would make up its own when asked."""
+    if "vertex_normals" not in part._cache.cache:
+        return None
+    normals = np.asarray(part.vertex_normals, np.float64)
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    if normals.shape != part.vertices.shape or not np.isfinite(normals).all() or (length < 1e-6).any():
+        return None
+    return normals / length
+
+
+def _stored_uvs(part: Any) -> np.ndarray | None:
+    uvs = getattr(part.visual, "uv", None)
+    if uvs is None or np.asarray(uvs).shape != (len(part.vertices), 2) or not np.isfinite(uvs).all():
+        return None
+    return np.asarray(uvs)
+
+
+def _material(part: Any) -> tuple[np.ndarray | None, Any]:
+    """Linear base colour (None when the file says nothing) and the map as trimesh holds it."""
+    material = getattr(part.visual, "material", None)
+    if material is None or part.visual.kind != "texture":
+        return None, None
+    image = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
+    factor = getattr(material, "baseColorFactor", None)
+    if factor is not None:  # glTF states factors in linear light, trimesh keeps them as bytes
+        return np.asarray(factor, np.float64)[:3] / (255.0 if np.asarray(factor).dtype == np.uint8 else 1.0), image
+    # trimesh fills in a grey of its own for `diffuse`; only "kd" tells that the file gave one (linear)
+    diffuse = (getattr(material, "kwargs", None) or {}).get("kd")
+    known = diffuse is not None and np.asarray(diffuse).shape == (3,)
+    return np.clip(np.asarray(diffuse, np.float64), 0.0, 1.0) if known else None, image
+
+
+def _linear_map(image: Any) -> np.ndarray:
+    mode = "RGBA" if "A" in image.getbands() else "RGB"
+    pixels = np.asarray(image.convert(mode), np.float32) / np.float32(255.0)
+    pixels[..., :3] = srgb_to_linear(pixels[..., :3])
+    return pixels
+
+
+def _judge(file: Path, mesh: MeshData) -> None:
+    _refuse_many_faces(file, len(mesh.faces))
+    bad = np.count_nonzero(~np.isfinite(mesh.vertices).all(axis=1))
+    if bad:
+        raise AssetError(file, f"{bad} of {len(mesh.vertices)} vertices are not finite numbers", "export it again")
+    if mesh.faces.min() < 0 or mesh.faces.max() >= len(mesh.vertices):
+        raise AssetError(file, "has faces that name vertices it does not hold", "it may be cut short; export it again")
+    used = mesh.vertices[np.unique(mesh.faces)]
+    extent = np.ptp(used, axis=0)
+    if not extent.max() > 0.0:
+        raise AssetError(file, "has no extent: all its vertices coincide", "check the scale it was exported with")

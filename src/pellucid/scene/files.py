@@ -1,0 +1,149 @@
+"""Scenes as files: JSON or TOML that a person can write, with meshes, pictures and arrays beside them."""
+
+from __future__ import annotations
+
+import difflib
+import json
+import tomllib
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pellucid.errors import AssetError, SceneError
+from pellucid.io.files import existing_file, replacing, suffix_of
+from pellucid.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from pydantic import ValidationError
+    from pydantic_core import ErrorDetails
+
+SUFFIXES = (".json", ".toml")
+
+
+def load_scene(path: str | PathLike[str]) -> Scene:
+    """Read a scene file.
+
+    Parameters
+    ----------
+    path : .json or .toml; files named in it are relative to its folder.
+
+    Raises
+    ------
+    AssetError : the file, or one that it names, is missing, damaged or of the wrong kind.
+    SceneError : a field is missing, unknown or out of range; names the file and the field.
+    """
+    from pydantic import ValidationError
+
+    from pellucid.scene.loading import build_scene
+    from pellucid.scene.schema import SceneFile
+
+    file = existing_file(path)
+    data = _parsed(file, suffix_of(file, SUFFIXES, "read as a scene"))
+    try:
+        part = SceneFile.model_validate(data)
+    except ValidationError as error:
+        raise _explained(file, data, error) from None
+    return build_scene(part, file)
+
+
+def save_scene(scene: Scene, path: str | PathLike[str]) -> None:
+    """Write a scene so that :func:`load_scene` gives it back.
+
+    Things made from files and by named generators are written as such; what was made from arrays is
+    written beside the scene file, as ``<scene>.<part>.npz`` or ``.exr``. On failure nothing new is left.
+
+    Parameters
+    ----------
+    path : .json or .toml.
+
+    Raises
+    ------
+    AssetError : wrong suffix, missing folder, full disk.
+    SceneError : something that no scene file can state, such as a medium of the user's own formula.
+    """
+    from pellucid.scene.saving import Sidecars, describe_scene
+
+    file = Path(path)
+    suffix = suffix_of(file, SUFFIXES, "written as a scene")
+    if not file.parent.is_dir():
+        raise AssetError(file, f"the folder {str(file.parent)!r} does not exist", "create it first")
+    beside = Sidecars(file)
+    try:
+        described = describe_scene(scene, beside)
+        text = json.dumps(described, indent=2, ensure_ascii=False) + "\n" if suffix == ".json" else _toml(described)
+        with replacing(file) as part:
+            part.write_text(text, encoding="utf-8")
+    except BaseException:
+        beside.take_back()
+        raise
+
+
+def _parsed(file: Path, suffix: str) -> Any:
+    try:
+        text = file.read_text(encoding="utf-8")
+        return json.loads(text) if suffix == ".json" else tomllib.loads(text)
+    except UnicodeDecodeError as error:
+        raise AssetError(file, f"is not UTF-8 text: {error.reason}", "save it as UTF-8") from error
+    except (json.JSONDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
+        raise AssetError(file, f"is not valid {suffix[1:].upper()}: {error}", "correct it there") from error
+
+
+def _explained(file: Path, data: Any, error: ValidationError) -> SceneError:
+    """The first fault that pydantic found, in the words of a scene file."""
+    found = error.errors(include_url=False)
+    fault = found[0]
+    where = _field_path(fault, data)
+    reason, remedy = _words(fault)
+    others = {_field_path(other, data) for other in found} - {where}
+    more = f"; also wrong: {', '.join(sorted(others))}" if others else ""
+    return SceneError(f"{file}: {where or 'the scene'}", reason + more, remedy)
+
+
+def _words(fault: ErrorDetails) -> tuple[str, str]:
+    """What is wrong, and what to do."""
+    from pellucid.scene.schema import KNOWN_FIELDS
+
+    if fault["type"] == "missing":
+        return "is missing", "add it"
+    if fault["type"] == "extra_forbidden":
+        close = difflib.get_close_matches(str(fault["loc"][-1]), KNOWN_FIELDS, n=1)
+        return "is not a field that belongs here", f"did you mean {close[0]!r}?" if close else "remove it"
+    if fault["type"] in ("unknown_kind", "finite_number"):
+        return fault["msg"], ""
+    shown = repr(fault["input"])
+    return f"{fault['msg'][0].lower()}{fault['msg'][1:]}, got {shown if len(shown) < 60 else shown[:57] + '...'}", ""
+
+
+def _field_path(fault: ErrorDetails, data: Any) -> str:
+    """``objects[0].size_m``: pydantic's location without the names of the variants it tried."""
+    path, here = "", data
+    for i, part in enumerate(fault["loc"]):
+        last_and_absent = i == len(fault["loc"]) - 1 and fault["type"] == "missing"
+        if isinstance(part, int):
+            path += f"[{part}]"
+            here = here[part] if isinstance(here, list) and part < len(here) else None
+        elif last_and_absent or (isinstance(here, dict) and part in here):
+            path += f".{part}"
+            here = here.get(part) if isinstance(here, dict) else None
+    return path.removeprefix(".")
+
+
+def _toml(described: Mapping[str, Any]) -> str:
+    """Plain values first, then a table each, then the lists of tables; the standard library only reads TOML."""
+    lines = [f"{key} = {_toml_value(value)}" for key, value in described.items() if not isinstance(value, dict | list)]
+    for key, value in described.items():
+        tables = value if isinstance(value, list) else [value] if isinstance(value, dict) else []
+        for table in tables:
+            lines += ["", f"[[{key}]]" if isinstance(value, list) else f"[{key}]"]
+            lines += [f"{name} = {_toml_value(item)}" for name, item in table.items()]
+    return "\n".join(lines).lstrip("\n") + "\n"
+
+
+def _toml_value(value: Any) -> str:
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {_toml_value(item)}" for key, item in value.items()) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_toml_value, value)) + "]"
+    # JSON's strings, numbers and booleans are TOML's, but for the control character DEL
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -1,0 +1,168 @@
+"""From the parts of a scene file to scene objects; every error names the field of the file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pellucid import media
+from pellucid.errors import AssetError, SceneError
+from pellucid.media import Medium
+from pellucid.scene import schema
+from pellucid.scene.camera import Camera
+from pellucid.scene.environment import Environment
+from pellucid.scene.lights import AreaLight, DirectionalLight, PointLight
+from pellucid.scene.mesh import Mesh
+from pellucid.scene.placement import Light, Origin, SceneObject
+from pellucid.scene.quality import Quality
+from pellucid.scene.refractive_volume import RefractiveVolume
+from pellucid.scene.scene import Scene
+
+LIGHTS: dict[str, type[Light]] = {"directional": DirectionalLight, "point": PointLight, "area": AreaLight}
+MESHES: dict[str, Callable[..., Mesh]] = {
+    "plane": Mesh.plane,
+    "box": Mesh.box,
+    "sphere": Mesh.sphere,
+    "checkerboard": Mesh.checkerboard,
+}
+
+
+def build_scene(part: schema.SceneFile, file: Path) -> Scene:
+    """The scene that a file describes; paths in it are relative to its folder."""
+    folder = file.parent
+    given: dict[str, Any] = part.given("camera", "environment", "lights", "objects")
+    with located(file, "camera"):
+        given["camera"] = Camera(**part.camera.given())
+    if part.environment is not None:
+        with located(file, "environment"):
+            given["environment"] = _environment(part.environment, folder)
+    given["lights"], given["objects"] = [], []
+    for i, light in enumerate(part.lights):
+        with located(file, f"lights[{i}]"):
+            given["lights"].append(LIGHTS[light.type](**light.given("type")))
+    for i, thing in enumerate(part.objects):
+        with located(file, f"objects[{i}]"):
+            given["objects"].append(_object(thing, folder))
+    with located(file, ""):
+        return Scene(**given)
+
+
+@contextmanager
+def located(file: Path, where: str) -> Iterator[None]:
+    """Rewrites ``mesh.scale`` of a SceneError to ``file: objects[2].scale``."""
+    try:
+        yield
+    except SceneError as error:
+        last = error.field.partition(".")[2] or error.field
+        raise SceneError(f"{file}: {'.'.join(filter(None, (where, last)))}", error.reason, error.remedy) from error
+
+
+def _environment(part: Any, folder: Path) -> Environment:
+    given = part.given("kind", "file", "intensity", "rotation_deg")
+    makers: dict[str, Callable[..., Environment]] = {
+        "studio": Environment.studio,
+        "sky": Environment.sky,
+        "constant": Environment.constant,
+    }
+    if isinstance(part, schema.EnvironmentPicture):
+        result = Environment.load(folder / part.file)
+    else:
+        result = makers[part.kind](**given)
+    changes = {name: getattr(part, name) for name in ("intensity", "rotation_deg") if name in part.model_fields_set}
+    return result.replace(**changes)
+
+
+def _object(part: Any, folder: Path) -> SceneObject:
+    return _mesh(part, folder) if isinstance(part, schema.MeshBase) else _volume(part, folder)
+
+
+def _mesh(part: schema.MeshBase, folder: Path) -> Mesh:
+    given = part.given("type", "kind", "file", "arrays")
+    if "base_color_map" in given:
+        given["base_color_map"] = _map(given["base_color_map"], folder)
+    if isinstance(part, schema.MeshOfFile):
+        return Mesh.load(folder / part.file, **given)
+    if isinstance(part, schema.MeshOfArrays):
+        from pellucid.io.volumes import read_arrays
+
+        path = folder / part.arrays
+        arrays: dict[str, Any] = dict(read_arrays(path))
+        if not {"vertices", "faces"} <= set(arrays) <= {"vertices", "faces", "normals", "uvs"}:
+            raise AssetError(path, f"holds {sorted(arrays)}, not a mesh", "it needs vertices and faces")
+        return Mesh(**arrays, **given, origin=Origin({"arrays": str(path.resolve())}))
+    return MESHES[part.kind](**given)  # type: ignore[attr-defined]
+
+
+def _map(name: str, folder: Path) -> np.ndarray | None:
+    """A picture as base colour; ``"none"`` takes away the one that a mesh file brings along."""
+    from pellucid.io.images import read_image
+
+    if name == "none":
+        return None
+    pixels = read_image(folder / name)
+    return pixels if pixels.shape[2] >= 3 else np.repeat(pixels[..., :1], 3, axis=2)
+
+
+def _volume(part: Any, folder: Path) -> RefractiveVolume:
+    look = {name: getattr(part, name) for name in schema.VolumeBase.model_fields if name in part.model_fields_set}
+    del look["type"]
+    if "quality" in look:
+        look["quality"] = _quality(part.quality)
+    if "center_m" in part.model_fields_set:
+        look["center_m"] = part.center_m
+    if isinstance(part, schema.VolumeOfMesh):
+        settings = {name: getattr(part, name) for name in ("resolution", "ambient_n") if name in part.model_fields_set}
+        return RefractiveVolume.from_mesh(folder / part.mesh, substance(part.medium), **settings, **look)
+    if isinstance(part, schema.VolumeOfArray):
+        return _volume_of_array(part, folder, look)
+    return _stored_volume(part, folder, look)
+
+
+def _quality(part: schema.QualityFile) -> Quality:
+    try:
+        return Quality(**part.given())
+    except SceneError as error:
+        raise SceneError(f"refractive_volume.{error.field}", error.reason, error.remedy) from error
+
+
+def _volume_of_array(part: schema.VolumeOfArray, folder: Path, look: dict[str, Any]) -> RefractiveVolume:
+    from pellucid.io.volumes import read_volume
+
+    names = ("array", "absorption", "scattering", "anisotropy", "emission", "opaque")
+    files = {name: folder / getattr(part, name) for name in names if name in part.model_fields_set}
+    arrays: dict[str, Any] = {name: read_volume(path) for name, path in files.items()}
+    settings = part.given(*names, *schema.VolumeBase.model_fields, "center_m")
+    recipe = {**settings, **{name: str(path.resolve()) for name, path in files.items()}}
+    return RefractiveVolume.from_array(arrays.pop("array"), **arrays, **settings, **look, origin=Origin(recipe))
+
+
+def _stored_volume(part: schema.StoredVolume, folder: Path, look: dict[str, Any]) -> RefractiveVolume:
+    from pellucid.fields.volume import Region, Volume
+    from pellucid.io.volumes import read_arrays
+
+    path = folder / part.volume
+    arrays: dict[str, Any] = dict(read_arrays(path))
+    regions = []
+    for i, region in enumerate(part.regions or []):
+        if f"region_{i}" not in arrays:
+            raise AssetError(path, f"has no array 'region_{i}'", "it belongs to another scene file")
+        words = region.given("medium")
+        regions.append(Region(arrays.pop(f"region_{i}"), substance(region.medium), **words))
+    fields = ("delta_n", "absorption", "scattering", "anisotropy", "emission", "opaque")
+    if set(arrays) - set(fields):
+        raise AssetError(path, f"holds {sorted(set(arrays) - set(fields))}, not a volume", "save the scene again")
+    if "ambient_n" in part.model_fields_set:
+        arrays["ambient_n"] = part.ambient_n
+    volume = Volume(extent_m=part.extent_m, regions=tuple(regions), **arrays)
+    return RefractiveVolume(volume, **look)
+
+
+def substance(part: str | float | schema.ColouredMedium) -> Medium:
+    """The medium that a scene file names."""
+    if not isinstance(part, schema.ColouredMedium):
+        return media.resolve(part)
+    return media.resolve(part.base).with_absorption(part.absorption_rgb_per_m, part.name or None)

@@ -1,0 +1,248 @@
+"""Things that bend light inside: glass bodies, graded-index fields, hot air."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from os import PathLike, fspath
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from pellucid.errors import SceneError
+from pellucid.scene import checks
+from pellucid.scene.placement import Origin, SceneObject, check_placement, store, translation_matrix
+from pellucid.scene.quality import Quality
+
+if TYPE_CHECKING:
+    from pellucid.fields.volume import Volume
+    from pellucid.media import Medium
+
+    Substance = str | Medium | float
+    Extent = float | Sequence[float]
+
+
+@dataclass(frozen=True, eq=False)
+class RefractiveVolume(SceneObject):
+    """A box of matter whose refractive index varies, placed in the world.
+
+    Parameters
+    ----------
+    volume : the field itself, a ``pellucid.fields.volume.Volume``.
+    boundary : ``"sharp"`` refracts and reflects where regions meet, by Snell and Fresnel;
+        ``"smooth"`` lets the index change over about a voxel instead.
+    position, rotation, scale : metres, degrees about x, y, z in this order, one factor > 0.
+    dispersion : trace red, green and blue apart where the medium asks for it.
+    smoothing_voxels : width of the Gaussian that smooths a field before its gradient, 0 to 8.
+    gradient : ``"central"`` differences or ``"sobel"``.
+    surroundings : ``"rays"`` trace what a ray sees once it has left; ``"screen"`` looks it up in the
+        picture behind, cheaper and blind to what the picture does not show.
+    quality : how carefully rays are bent.
+    center_m : where the middle of the box lies in the object's own coordinates. From a mesh it is the
+        middle of the box around the mesh, so that ``position=(0, 0, 0)`` leaves the model where its file
+        says: world = T(position) R S (x_volume + center_m), with x_mesh = x_volume + center_m.
+    origin : the recipe that scene files store; set by the class methods.
+
+    Raises
+    ------
+    SceneError : a value out of range.
+    """
+
+    volume: Volume
+    boundary: str = "sharp"
+    position: checks.Vector = (0.0, 0.0, 0.0)
+    rotation: checks.Vector = (0.0, 0.0, 0.0)
+    scale: float = 1.0
+    dispersion: bool = True
+    smoothing_voxels: float = 0.75
+    gradient: str = "central"
+    surroundings: str = "rays"
+    quality: Quality = field(default_factory=Quality)
+    center_m: checks.Vector = (0.0, 0.0, 0.0)
+    origin: Origin | None = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        from pellucid.fields.volume import Volume
+
+        if not isinstance(self.volume, Volume):
+            kind = type(self.volume).__name__
+            raise SceneError("refractive_volume.volume", f"cannot be {kind!r}", "use from_mesh, from_array, from_sdf")
+        store(self, **_checked({name: getattr(self, name) for name in DEFAULTS}))
+
+    def replace(self, **changes: Any) -> Self:
+        """A copy with some fields changed; a new volume or centre has no recipe."""
+        if "volume" in changes or "center_m" in changes:
+            changes = {"origin": None} | changes
+        return super().replace(**changes)
+
+    def object_to_world(self) -> np.ndarray:
+        """(4, 4) float64: maps volume coordinates (origin at the middle of the box) to the world."""
+        return super().object_to_world() @ translation_matrix(self.center_m)
+
+    @classmethod
+    def from_volume(cls, volume: Volume, **placement: Any) -> Self:
+        """A ready ``Volume``, placed; `placement` is any other field of the class."""
+        return cls(volume, **placement)
+
+    @classmethod
+    def from_mesh(
+        cls, mesh: Any, medium: Substance, resolution: int = 128, ambient_n: float = 1.0, **placement: Any
+    ) -> Self:
+        """The inside of a closed mesh, filled with a medium.
+
+        Parameters
+        ----------
+        mesh : path of an .obj, .ply, .stl, .glb or .gltf; a trimesh or Mesh (its geometry, without its
+            placement); or (vertices (V, 3), faces (F, 3)).
+        medium : name, Medium or constant index.
+        resolution : voxels along the longest edge of the box.
+        ambient_n : index around the body.
+        placement : any other field of the class, such as ``boundary`` or ``position``.
+
+        Raises
+        ------
+        AssetError : the file cannot be used. SceneError : a value out of range, an unknown medium.
+        """
+        from pellucid import media
+        from pellucid.fields.volume import Volume
+
+        options = _checked(placement)
+        substance = media.resolve(medium, "refractive_volume.medium")
+        vertices, faces, recipe = _triangles(mesh)
+        volume, center = Volume.from_mesh(vertices, faces, substance, resolution, ambient_n=ambient_n)
+        if recipe is not None and "center_m" not in options:
+            made = {**recipe, "medium": substance, "resolution": resolution, "ambient_n": volume.ambient_n}
+            options["origin"] = Origin(made)
+        return cls(volume, **({"center_m": center} | options))
+
+    @classmethod
+    def from_array(
+        cls,
+        n: np.ndarray,
+        extent_m: Extent,
+        ambient_n: float = 1.0,
+        absorption: np.ndarray | None = None,
+        scattering: np.ndarray | None = None,
+        anisotropy: np.ndarray | None = None,
+        emission: np.ndarray | None = None,
+        opaque: np.ndarray | None = None,
+        **placement: Any,
+    ) -> Self:
+        """Refractive index and more, given voxel by voxel; see ``Volume.from_array``.
+
+        Parameters
+        ----------
+        n : (Z, Y, X) index, or (Z, Y, X, 3) for red, green and blue.
+        extent_m : edges of the box along x, y, z, or its longest edge when voxels are cubes.
+        ambient_n : index around it.
+        absorption, scattering : (Z, Y, X, 3) 1/m. anisotropy : (Z, Y, X). emission : (Z, Y, X, 3)
+            radiance per metre. opaque : (Z, Y, X, 4) linear colour and coverage.
+        placement : any other field of the class.
+
+        Raises
+        ------
+        SceneError : a value out of range or an array of the wrong shape.
+        """
+        from pellucid.fields.volume import Volume
+
+        options = _checked(placement)
+        more = (absorption, scattering, anisotropy, emission, opaque)
+        return cls(Volume.from_array(n, extent_m, ambient_n, *more), **options)
+
+    @classmethod
+    def from_function(
+        cls,
+        f: Callable[..., np.ndarray],
+        resolution: int,
+        extent_m: Extent,
+        ambient_n: float = 1.0,
+        **placement: Any,
+    ) -> Self:
+        """Index as a function ``f(x, y, z)`` of metres from the middle of the box; see ``Volume.from_function``."""
+        from pellucid.fields.volume import Volume
+
+        options = _checked(placement)
+        return cls(Volume.from_function(f, resolution, extent_m, ambient_n), **options)
+
+    @classmethod
+    def from_sdf(
+        cls,
+        f: Callable[..., np.ndarray],
+        medium: Substance,
+        resolution: int,
+        extent_m: Extent,
+        ambient_n: float = 1.0,
+        **placement: Any,
+    ) -> Self:
+        """A body given by its signed distance ``f(x, y, z)`` in metres, negative inside; see ``Volume.from_sdf``."""
+        from pellucid.fields.volume import Volume
+
+        options = _checked(placement)
+        return cls(Volume.from_sdf(f, medium, resolution, extent_m, ambient_n), **options)
+
+    @classmethod
+    def from_regions(
+        cls,
+        regions: Sequence[tuple[Any, Substance]],
+        resolution: int,
+        extent_m: Extent,
+        ambient_n: float = 1.0,
+        **placement: Any,
+    ) -> Self:
+        """Up to four bodies as (signed distance, medium); the first that holds a point owns it."""
+        from pellucid.fields.volume import Volume
+
+        options = _checked(placement)
+        return cls(Volume.from_regions(list(regions), resolution, extent_m, ambient_n), **options)
+
+
+DEFAULTS = tuple(name for name in RefractiveVolume.__dataclass_fields__ if name not in ("volume", "origin"))
+
+
+def _checked(given: Mapping[str, Any]) -> dict[str, Any]:
+    """The fields that are given, as they are stored; done before any long work, so that slips show at once."""
+    prefix = "refractive_volume"
+    unknown = [name for name in given if name not in (*DEFAULTS, "origin")]
+    if unknown:
+        raise SceneError(
+            f"{prefix}.{unknown[0]}", "is not a field of RefractiveVolume", f"it has {', '.join(DEFAULTS)}"
+        )
+    tests: dict[str, Callable[[str, Any], Any]] = {
+        "boundary": lambda f, v: checks.choice(f, v, ("sharp", "smooth")),
+        "dispersion": checks.flag,
+        "smoothing_voxels": lambda f, v: checks.number(f, v, low=0.0, high=8.0, unit="voxels"),
+        "gradient": lambda f, v: checks.choice(f, v, ("central", "sobel")),
+        "surroundings": lambda f, v: checks.choice(f, v, ("rays", "screen")),
+        "quality": _quality,
+        "center_m": checks.vector,
+    }
+    result = dict(given)
+    result |= {name: test(f"{prefix}.{name}", given[name]) for name, test in tests.items() if name in given}
+    neutral = {"position": (0.0, 0.0, 0.0), "rotation": (0.0, 0.0, 0.0), "scale": 1.0}
+    placed = check_placement(prefix, **{name: given.get(name, value) for name, value in neutral.items()})
+    return result | {name: value for name, value in placed.items() if name in given}
+
+
+def _quality(name: str, value: Any) -> Quality:
+    if not isinstance(value, Quality):
+        raise SceneError(name, f"cannot be {type(value).__name__!r}", "give Quality(...)")
+    return value
+
+
+def _triangles(mesh: Any) -> tuple[np.ndarray, np.ndarray, dict[str, Any] | None]:
+    """Vertices, faces, and how a scene file names them (None when it cannot)."""
+    if isinstance(mesh, str | PathLike):
+        from pellucid.io.meshes import read_mesh
+
+        data = read_mesh(mesh)
+        return data.vertices, data.faces, {"mesh": str(Path(fspath(mesh)).resolve())}
+    pair = mesh if isinstance(mesh, tuple | list) else (getattr(mesh, "vertices", None), getattr(mesh, "faces", None))
+    if len(pair) != 2 or pair[0] is None or pair[1] is None:
+        kind = type(mesh).__name__
+        raise SceneError("refractive_volume.mesh", f"cannot be {kind!r}", "give a path, a trimesh or (vertices, faces)")
+    vertices = checks.array("refractive_volume.mesh vertices", np.asarray(pair[0]), (None, 3), np.float64)
+    faces = checks.array("refractive_volume.mesh faces", np.asarray(pair[1]), (None, 3), np.int32)
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        raise SceneError("refractive_volume.mesh faces", f"name vertices beyond the {len(vertices)} there are")
+    return vertices, faces, None

@@ -1,0 +1,198 @@
+"""From scene objects to the parts of a scene file; what has no recipe is written beside it as arrays."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pellucid import media
+from pellucid.errors import SceneError
+from pellucid.media import Medium
+from pellucid.scene.environment import Environment
+from pellucid.scene.lights import AreaLight, DirectionalLight, PointLight
+from pellucid.scene.mesh import Mesh
+from pellucid.scene.refractive_volume import RefractiveVolume
+from pellucid.scene.scene import Scene
+
+LIGHT_TYPES: dict[type, str] = {DirectionalLight: "directional", PointLight: "point", AreaLight: "area"}
+LOOKS: dict[type, tuple[str, ...]] = {
+    Mesh: (
+        *("position", "rotation", "scale", "base_color", "roughness", "specular", "emission"),
+        *("double_sided", "shading"),
+    ),
+    RefractiveVolume: (
+        *("position", "rotation", "scale", "boundary", "dispersion", "smoothing_voxels", "gradient"),
+        *("surroundings", "quality"),
+    ),
+}
+
+
+class Sidecars:
+    """Files written beside a scene file, named after it; taken back if the scene cannot be finished."""
+
+    def __init__(self, scene_file: Path) -> None:
+        self.scene_file = scene_file
+        self._new: list[Path] = []
+
+    def relative(self, path: str | Path) -> str:
+        """`path` as the scene file states it: relative to its folder where that is possible."""
+        try:
+            return Path(os.path.relpath(path, self.scene_file.parent.resolve())).as_posix()
+        except ValueError:  # another drive
+            return Path(path).as_posix()
+
+    def arrays(self, label: str, arrays: Mapping[str, np.ndarray]) -> str:
+        """Writes an .npz and returns its name."""
+        from pellucid.io.volumes import write_arrays
+
+        path = self._path(label, ".npz")
+        write_arrays(path, arrays)
+        return path.name
+
+    def picture(self, label: str, pixels: np.ndarray) -> str:
+        """Writes an .exr and returns its name."""
+        from pellucid.io.images import write_image
+
+        path = self._path(label, ".exr")
+        write_image(path, pixels)
+        return path.name
+
+    def take_back(self) -> None:
+        """Removes every file that was not there before."""
+        for path in self._new:
+            path.unlink(missing_ok=True)
+
+    def _path(self, label: str, suffix: str) -> Path:
+        path = self.scene_file.with_name(f"{self.scene_file.stem}.{label}{suffix}")
+        if not path.exists():
+            self._new.append(path)
+        return path
+
+
+def describe_scene(scene: Scene, beside: Sidecars) -> dict[str, Any]:
+    """The scene as plain dictionaries, lists, numbers and strings; defaults are left out."""
+    described: dict[str, Any] = _stated(scene, ("exposure", "tone_mapping"))
+    described["camera"] = _stated(scene.camera, [f.name for f in dataclasses.fields(scene.camera)])
+    described["environment"] = _environment(scene.environment, beside)
+    described["lights"] = [_light(light, i) for i, light in enumerate(scene.lights)]
+    described["objects"] = [_object(thing, f"object-{i}", i, beside) for i, thing in enumerate(scene.objects)]
+    return described
+
+
+def describe_medium(medium: Any, where: str) -> str | float | dict[str, Any]:
+    """A medium as a scene file names it.
+
+    Raises
+    ------
+    SceneError : a medium of the user's own formula, which a file cannot state.
+    """
+    found = media.resolve(medium)
+    if _same(found, found.name):
+        return found.name
+    clear = found.absorption_per_m == (0.0, 0.0, 0.0)
+    if not found.is_dispersive:
+        base: str | float = found.n_d
+    else:
+        named = [name for name in media.names() if media.get(name).formula == found.formula]
+        if not named:
+            raise SceneError(where, f"{found.name!r} has a formula of its own", "use a medium of pellucid.media")
+        base = named[0]
+    if clear and not isinstance(base, str):
+        return base
+    return {"base": base, "absorption_rgb_per_m": list(found.absorption_per_m), "name": found.name}
+
+
+def _same(medium: Medium, name: str) -> bool:
+    try:
+        return bool(media.get(name) == medium)
+    except SceneError:
+        return False
+
+
+def _environment(environment: Environment, beside: Sidecars) -> dict[str, Any]:
+    if environment.origin is None:
+        source: dict[str, Any] = {"file": beside.picture("environment", environment.pixels)}
+    else:
+        source = _plain(environment.origin.recipe)
+        if "file" in source:
+            source["file"] = beside.relative(source["file"])
+    return source | _stated(environment, ("intensity", "rotation_deg"))
+
+
+def _light(light: Any, index: int) -> dict[str, Any]:
+    if type(light) not in LIGHT_TYPES:
+        raise SceneError(f"lights[{index}]", f"a {type(light).__name__} cannot be written to a scene file")
+    return {"type": LIGHT_TYPES[type(light)], **_stated(light, [f.name for f in dataclasses.fields(light)])}
+
+
+def _object(thing: Any, label: str, index: int, beside: Sidecars) -> dict[str, Any]:
+    if isinstance(thing, Mesh):
+        return {"type": "mesh", **_mesh(thing, label, beside), **_stated(thing, LOOKS[Mesh])}
+    if isinstance(thing, RefractiveVolume):
+        source = _volume(thing, label, f"objects[{index}].medium", beside)
+        return {"type": "refractive_volume", **source, **_stated(thing, LOOKS[RefractiveVolume])}
+    raise SceneError(f"objects[{index}]", f"a {type(thing).__name__} cannot be written to a scene file")
+
+
+def _mesh(mesh: Mesh, label: str, beside: Sidecars) -> dict[str, Any]:
+    if mesh.origin is None:
+        names = ("vertices", "faces", "normals", "uvs")
+        arrays = {name: getattr(mesh, name) for name in names if getattr(mesh, name) is not None}
+        source: dict[str, Any] = {"arrays": beside.arrays(label, arrays)}
+    else:
+        source = _plain(mesh.origin.recipe)
+        source |= {name: beside.relative(source[name]) for name in ("file", "arrays") if name in source}
+    source["base_color"] = list(mesh.base_color)  # a file or a checkerboard brings along another default
+    own = mesh.origin.base_color_map if mesh.origin else None
+    if mesh.base_color_map is not own:
+        picture = mesh.base_color_map
+        source["base_color_map"] = "none" if picture is None else beside.picture(f"{label}.map", picture)
+    return source
+
+
+def _volume(thing: RefractiveVolume, label: str, where: str, beside: Sidecars) -> dict[str, Any]:
+    if thing.origin is not None:
+        recipe = dict(thing.origin.recipe)
+        substance = {"medium": describe_medium(recipe.pop("medium"), where)} if "medium" in recipe else {}
+        source = _plain(recipe) | substance
+        files = ("mesh", "array", "absorption", "scattering", "anisotropy", "emission", "opaque")
+        source |= {name: beside.relative(source[name]) for name in files if name in source}
+        return source if "mesh" in source else source | _stated(thing, ("center_m",))
+    volume = thing.volume
+    names = ("delta_n", "absorption", "scattering", "anisotropy", "emission", "opaque")
+    arrays = {name: getattr(volume, name) for name in names if getattr(volume, name) is not None}
+    regions = []
+    for i, region in enumerate(volume.regions):
+        arrays[f"region_{i}"] = region.sdf
+        emission = [float(e) for e in region.emission]
+        regions.append({"medium": describe_medium(region.medium, where), "name": region.name, "emission": emission})
+    source = {"volume": beside.arrays(label, arrays), "extent_m": [float(e) for e in volume.extent_m]}
+    source |= {"ambient_n": float(volume.ambient_n), **_stated(thing, ("center_m",))}
+    return source | ({"regions": regions} if regions else {})
+
+
+def _stated(value: Any, names: Any) -> dict[str, Any]:
+    """Those fields that differ from their default, or have none."""
+    wanted = [f for f in dataclasses.fields(value) if f.name in names]
+    result = {}
+    for f in wanted:
+        default = f.default_factory() if f.default_factory is not dataclasses.MISSING else f.default
+        if getattr(value, f.name) != default:
+            result[f.name] = _plain(getattr(value, f.name))
+    return result
+
+
+def _plain(value: Any) -> Any:
+    """Tuples as lists, dataclasses as the fields that differ from their defaults."""
+    if isinstance(value, Mapping):
+        return {key: _plain(item) for key, item in value.items()}
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        return _stated(value, [f.name for f in dataclasses.fields(value)])
+    if isinstance(value, tuple | list):
+        return [_plain(item) for item in value]
+    return value.item() if isinstance(value, np.generic) else value

@@ -1,0 +1,275 @@
+"""The shape of scene files, as pydantic models; values are judged by the scene classes themselves."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, StrictBool, StrictInt, StrictStr, Tag
+
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Triple = tuple[Number, Number, Number]
+UNSET: Any = None
+"""Default of a field that may be left out; what it then is, the scene class decides."""
+
+
+class Model(BaseModel):
+    """A part of a scene file; unknown fields are errors."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    def given(self, *but: str) -> dict[str, Any]:
+        """The fields that the file states, except some."""
+        return {name: getattr(self, name) for name in sorted(self.model_fields_set) if name not in but}
+
+
+class CameraFile(Model):
+    position: Triple
+    target: Triple = UNSET
+    up: Triple = UNSET
+    fov_deg: Number = UNSET
+    orthographic_height_m: Number | None = UNSET
+    near_m: Number = UNSET
+    far_m: Number = UNSET
+
+
+class EnvironmentBase(Model):
+    intensity: Number = UNSET
+    rotation_deg: Number = UNSET
+
+
+class EnvironmentPicture(EnvironmentBase):
+    file: StrictStr
+
+
+class StudioEnvironment(EnvironmentBase):
+    kind: Literal["studio"]
+
+
+class SkyEnvironment(EnvironmentBase):
+    kind: Literal["sky"]
+    sun_elevation_deg: Number = UNSET
+    sun_azimuth_deg: Number = UNSET
+    turbidity: Number = UNSET
+    sun_disc: StrictBool = UNSET
+    sun_diameter_deg: Number = UNSET
+    ground_albedo: Number | Triple = UNSET
+
+
+class ConstantEnvironment(EnvironmentBase):
+    kind: Literal["constant"]
+    rgb: Number | Triple = UNSET
+
+
+class DirectionalLightFile(Model):
+    type: Literal["directional"]
+    direction: Triple
+    color: Triple = UNSET
+    irradiance: Number = UNSET
+    cast_shadow: StrictBool = UNSET
+
+
+class PointLightFile(Model):
+    type: Literal["point"]
+    position: Triple
+    color: Triple = UNSET
+    intensity: Number = UNSET
+    cast_shadow: StrictBool = UNSET
+
+
+class AreaLightFile(Model):
+    type: Literal["area"]
+    position: Triple
+    edge_u: Triple
+    edge_v: Triple
+    color: Triple = UNSET
+    radiance: Number = UNSET
+    cast_shadow: StrictBool = UNSET
+
+
+class Placed(Model):
+    position: Triple = UNSET
+    rotation: Triple = UNSET
+    scale: Number = UNSET
+
+
+class MeshBase(Placed):
+    type: Literal["mesh"]
+    base_color: Triple = UNSET
+    base_color_map: StrictStr = UNSET
+    roughness: Number = UNSET
+    specular: Number = UNSET
+    emission: Triple = UNSET
+    double_sided: StrictBool = UNSET
+    shading: StrictStr = UNSET
+
+
+class MeshOfFile(MeshBase):
+    file: StrictStr
+
+
+class MeshOfArrays(MeshBase):
+    arrays: StrictStr
+
+
+class PlaneMesh(MeshBase):
+    kind: Literal["plane"]
+    size_m: Number | tuple[Number, Number] = UNSET
+
+
+class BoxMesh(MeshBase):
+    kind: Literal["box"]
+    size_m: Number | Triple = UNSET
+
+
+class SphereMesh(MeshBase):
+    kind: Literal["sphere"]
+    radius_m: Number = UNSET
+    segments: StrictInt = UNSET
+
+
+class CheckerboardMesh(MeshBase):
+    kind: Literal["checkerboard"]
+    size_m: Number | tuple[Number, Number] = UNSET
+    squares: StrictInt = UNSET
+    colors: tuple[Triple, Triple] = UNSET
+
+
+class QualityFile(Model):
+    method: StrictStr = UNSET
+    step_voxels: Number = UNSET
+    adaptive: StrictBool = UNSET
+    max_steps: StrictInt = UNSET
+    bounces: StrictInt = UNSET
+    min_weight: Number = UNSET
+
+
+class ColouredMedium(Model):
+    """A medium of the catalogue, or an index, with a colour of its own."""
+
+    base: StrictStr | Number
+    absorption_rgb_per_m: Triple
+    name: StrictStr = UNSET
+
+
+Substance = StrictStr | Number | ColouredMedium
+
+
+class VolumeBase(Placed):
+    type: Literal["refractive_volume"]
+    boundary: StrictStr = UNSET
+    dispersion: StrictBool = UNSET
+    smoothing_voxels: Number = UNSET
+    gradient: StrictStr = UNSET
+    surroundings: StrictStr = UNSET
+    quality: QualityFile = UNSET
+
+
+class VolumeOfMesh(VolumeBase):
+    mesh: StrictStr
+    medium: Substance
+    resolution: StrictInt = UNSET
+    ambient_n: Number = UNSET
+
+
+class VolumeOfArray(VolumeBase):
+    array: StrictStr
+    extent_m: Number | Triple
+    ambient_n: Number = UNSET
+    absorption: StrictStr = UNSET
+    scattering: StrictStr = UNSET
+    anisotropy: StrictStr = UNSET
+    emission: StrictStr = UNSET
+    opaque: StrictStr = UNSET
+    center_m: Triple = UNSET
+
+
+class RegionFile(Model):
+    medium: Substance
+    name: StrictStr = UNSET
+    emission: Triple = UNSET
+
+
+class StoredVolume(VolumeBase):
+    """What ``save_scene`` writes for a volume that no recipe describes."""
+
+    volume: StrictStr
+    extent_m: Triple
+    ambient_n: Number = UNSET
+    center_m: Triple = UNSET
+    regions: list[RegionFile] = UNSET
+
+
+def _environment_tag(data: Any) -> str | None:
+    return data.get("kind", "file" if "file" in data else None) if isinstance(data, dict) else None
+
+
+def _object_tag(data: Any) -> str | None:
+    """``mesh.plane``, ``mesh.file``, ``refractive_volume.array`` ...: the type and where the matter comes from."""
+    if not isinstance(data, dict):
+        return None
+    kind = data.get("type")
+    if kind == "mesh" and "kind" in data:
+        return f"mesh.{data['kind']}"
+    sources = {"mesh": ("file", "arrays"), "refractive_volume": ("mesh", "array", "volume")}.get(str(kind), ())
+    return next((f"{kind}.{source}" for source in sources if source in data), None)
+
+
+def _choose(tag: Any, message: str) -> Discriminator:
+    return Discriminator(tag, custom_error_type="unknown_kind", custom_error_message=message)
+
+
+EnvironmentFile = Annotated[
+    Annotated[EnvironmentPicture, Tag("file")]
+    | Annotated[StudioEnvironment, Tag("studio")]
+    | Annotated[SkyEnvironment, Tag("sky")]
+    | Annotated[ConstantEnvironment, Tag("constant")],
+    _choose(_environment_tag, 'needs "file", or "kind" = "studio", "sky" or "constant"'),
+]
+LightFile = Annotated[
+    Annotated[DirectionalLightFile, Tag("directional")]
+    | Annotated[PointLightFile, Tag("point")]
+    | Annotated[AreaLightFile, Tag("area")],
+    _choose(
+        lambda data: data.get("type") if isinstance(data, dict) else None,
+        'needs "type" = "directional", "point" or "area"',
+    ),
+]
+ObjectFile = Annotated[
+    Annotated[MeshOfFile, Tag("mesh.file")]
+    | Annotated[MeshOfArrays, Tag("mesh.arrays")]
+    | Annotated[PlaneMesh, Tag("mesh.plane")]
+    | Annotated[BoxMesh, Tag("mesh.box")]
+    | Annotated[SphereMesh, Tag("mesh.sphere")]
+    | Annotated[CheckerboardMesh, Tag("mesh.checkerboard")]
+    | Annotated[VolumeOfMesh, Tag("refractive_volume.mesh")]
+    | Annotated[VolumeOfArray, Tag("refractive_volume.array")]
+    | Annotated[StoredVolume, Tag("refractive_volume.volume")],
+    _choose(
+        _object_tag,
+        'needs "type" = "mesh" with "file" or "kind" (plane, box, sphere, checkerboard), '
+        'or "type" = "refractive_volume" with "mesh" or "array"',
+    ),
+]
+
+
+class SceneFile(Model):
+    """A whole scene file."""
+
+    camera: CameraFile
+    environment: EnvironmentFile = UNSET
+    lights: list[LightFile] = []
+    objects: list[ObjectFile] = []
+    exposure: Number = UNSET
+    tone_mapping: StrictStr = UNSET
+
+
+KNOWN_FIELDS = tuple(
+    sorted(
+        {
+            name
+            for model in list(globals().values())
+            if isinstance(model, type) and issubclass(model, Model)
+            for name in model.model_fields
+        }
+    )
+)
