@@ -1,0 +1,103 @@
+"""Memory layouts shared by NumPy and WGSL: each dtype here makes the WGSL struct of the same name."""
+
+from __future__ import annotations
+
+from pellucid.gpu.layout import struct
+
+FLAG_ORTHOGRAPHIC = 1
+
+MATERIAL_SINGLE_SIDED = 1
+MATERIAL_CASTS_SHADOW = 16  # shifted left by the layer of the shadow map
+
+LIGHT_DIRECTIONAL = 0
+LIGHT_POINT = 1
+LIGHT_AREA = 2
+
+FrameParams = struct(
+    [
+        ("clip_from_world", "mat4x4f"),
+        ("camera_position", "vec3f"),
+        ("near_m", "f32"),
+        ("camera_right", "vec3f"),
+        ("far_m", "f32"),
+        ("camera_up", "vec3f"),
+        ("flags", "u32"),
+        ("camera_forward", "vec3f"),
+        ("pixel_footprint", "f32"),  # radians per pixel, or metres per pixel when orthographic
+        ("size", "vec2f"),
+        ("jitter", "vec2f"),
+        ("half_extent", "vec2f"),  # tangents of the half angles, or metres when orthographic
+        ("environment_rotation", "vec2f"),  # cosine, sine
+        ("environment_intensity", "f32"),
+        ("environment_pixel_lod", "f32"),
+        ("environment_max_lod", "f32"),
+        ("ray_epsilon_m", "f32"),
+        ("light_count", "u32"),
+        ("triangle_count", "u32"),
+        ("sample_index", "u32"),
+        ("environment_height", "f32"),
+        ("environment_sh", ("vec4f", 9)),
+    ]
+)
+
+BvhNode = struct([("lower", "vec3f"), ("link", "u32"), ("upper", "vec3f"), ("count", "u32")])
+
+BvhTriangle = struct(
+    [
+        ("corner_0", "vec3f"),
+        ("single_sided", "u32"),
+        ("corner_1", "vec3f"),  # corners, not edges: neighbours must share them to the last bit, or cracks show
+        ("material", "u32"),
+        ("corner_2", "vec3f"),
+    ]
+)
+
+TriangleAttributes = struct(
+    [
+        ("normal_0", "vec3f"),
+        ("normal_1", "vec3f"),
+        ("normal_2", "vec3f"),
+        ("uv_0", "vec2f"),
+        ("uv_1", "vec2f"),
+        ("uv_2", "vec2f"),
+    ]
+)
+
+Material = struct(
+    [
+        ("base_color", "vec3f"),
+        ("roughness", "f32"),
+        ("emission", "vec3f"),
+        ("specular", "f32"),
+        ("base_color_layer", "i32"),  # -1 when the material has no map
+        ("texels_per_m", "f32"),  # mean density of the map on the surface, at level 0
+        ("flags", "u32"),
+    ]
+)
+
+Light = struct(
+    [
+        ("position", "vec3f"),
+        ("kind", "u32"),
+        ("direction", "vec3f"),  # from the surface towards a directional light; normal of an area light
+        ("shadow_layer", "i32"),  # -1 for no shadow; lamps without a map have 0
+        ("power", "vec3f"),  # irradiance, radiant intensity or radiance, by kind
+        ("shadow_texel_m", "f32"),
+        ("edge_u", "vec3f"),
+        ("edge_v", "vec3f"),
+        ("shadow_from_world", "mat4x4f"),
+    ]
+)
+
+QueryRay = struct([("origin", "vec3f"), ("t_max", "f32"), ("direction", "vec3f")])
+
+QueryHit = struct(
+    [
+        ("value", "vec3f"),  # by kernel: radiance, irradiance, or barycentric weights and depth value
+        ("t", "f32"),
+        ("direction", "vec3f"),
+        ("valid", "u32"),
+        ("triangle", "u32"),
+        ("blocked", "u32"),
+    ]
+)

@@ -1,0 +1,235 @@
+"""Put the surroundings of a scene on the GPU, and only what changed since the last time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pellucid.surroundings import environment, geometry, lights, maps
+from pellucid.surroundings.camera import write_camera
+from pellucid.surroundings.layouts import MATERIAL_CASTS_SHADOW, FrameParams
+
+if TYPE_CHECKING:
+    from pellucid.gpu import Device
+    from pellucid.scene import Camera, Environment, Mesh, Scene
+
+RAY_EPSILON = 2e-6  # of the largest coordinate: some rounding steps of a 32-bit float
+
+
+class Surroundings:
+    """What a ray that leaves refractive matter sees: environment, opaque meshes, lights.
+
+    Parameters
+    ----------
+    device : where the resources live.
+
+    Attributes
+    ----------
+    triangle_count : triangles of all opaque meshes.
+    mesh_bounds_ws : (lower, upper) corner in metres of each opaque mesh.
+    shadow_version : grows whenever the shadow maps are out of date.
+    shadow_views : one depth view for each shadow map, in the order of their layers.
+    shadow_lights : which light of the scene each shadow map belongs to.
+    """
+
+    def __init__(self, device: Device) -> None:
+        self.device = device
+        self.triangle_count = 0
+        self.mesh_bounds_ws: list[tuple[np.ndarray, np.ndarray]] = []
+        self.shadow_version = 0
+        self.shadow_views: list[Any] = []
+        self.shadow_lights: list[int] = []
+        self._seen: dict[str, list[Any]] = {}
+        self._frame = np.zeros((), FrameParams)
+        self._resources: dict[str, Any] = {
+            "frame": device.buffer(self._frame, "uniform", "frame"),
+            "env_sampler": device.sampler("linear", ("repeat", "clamp", "clamp")),
+            "base_color_sampler": device.sampler("linear", "repeat"),
+            "shadow_sampler": device.sampler("linear", "clamp", compare="less-equal"),
+        }
+        self._sizes: dict[str, int] = {}
+        self._geometry = geometry.gather(())
+        self._layers: list[int] = []
+        self._map_size = 1
+        self._casters: list[list[bool]] = []
+
+    @property
+    def bindings(self) -> dict[str, Any]:
+        """Resources of bind group 1 by their WGSL names."""
+        return self._resources
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """(width, height) of the picture in pixels."""
+        return int(self._frame["size"][0]), int(self._frame["size"][1])
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of GPU memory held."""
+        return FrameParams.itemsize + sum(self._sizes.values())
+
+    @property
+    def frame(self) -> np.ndarray:
+        """The frame parameters as last uploaded, a copy."""
+        return self._frame.copy()
+
+    def prepare(self, scene: Scene, size: tuple[int, int]) -> None:
+        """Upload what differs from the last call; the parts of a scene are told apart by identity.
+
+        Parameters
+        ----------
+        scene : the scene. size : (width, height) of the picture in pixels.
+        """
+        from pellucid.scene import Mesh
+
+        meshes = [o for o in scene.objects if isinstance(o, Mesh)]
+        try:
+            moved = self._prepare_geometry(meshes)
+            self._prepare_maps(meshes)
+            self._prepare_materials(meshes, relit=self._prepare_lights(scene.lights, moved))
+            self._prepare_environment(scene.environment)
+        except Exception:
+            self._seen.clear()  # what was uploaded is now uncertain
+            raise
+        self._frame["light_count"] = len(scene.lights)
+        self.set_camera(scene.camera, size)
+
+    def set_camera(
+        self,
+        camera: Camera,
+        size: tuple[int, int],
+        jitter: tuple[float, float] = (0.0, 0.0),
+        sample_index: int = 0,
+    ) -> None:
+        """Change the view; writes the frame parameters and nothing else.
+
+        Parameters
+        ----------
+        camera : the view. size : (width, height) of the picture in pixels.
+        jitter : offset of the sampled point from each pixel's centre, pixels right and down.
+        sample_index : number of the picture among those that are averaged.
+        """
+        write_camera(self._frame, camera, size, jitter)
+        height = float(self._frame["environment_height"])
+        texel = np.pi / height if height else np.pi
+        orthographic = bool(self._frame["flags"])
+        spread = 0.0 if orthographic else float(self._frame["pixel_footprint"])
+        self._frame["environment_pixel_lod"] = max(0.0, np.log2(max(spread / texel, 1e-9)))
+        self._frame["sample_index"] = sample_index
+        self.device.write(self._resources["frame"], self._frame.reshape(1))
+
+    def _prepare_geometry(self, meshes: Sequence[Mesh]) -> bool:
+        state = [_placement(m) for m in meshes]
+        if not self._changed("geometry", [part for mesh in state for part in mesh]):
+            return False
+        self._geometry = geometry.gather(meshes)
+        self._store("bvh_nodes", self._geometry.nodes)
+        self._store("bvh_triangles", self._geometry.triangles)
+        self._store("triangle_attributes", self._geometry.attributes)
+        self.triangle_count = self._geometry.count
+        self.mesh_bounds_ws = self._geometry.bounds
+        self._frame["triangle_count"] = self._geometry.count
+        self._frame["ray_epsilon_m"] = RAY_EPSILON * self._geometry.scale_m
+        return True
+
+    def _prepare_maps(self, meshes: Sequence[Mesh]) -> None:
+        images = [m.base_color_map for m in meshes]
+        if self._changed("maps", images):
+            levels, self._layers = maps.stack_maps(images)
+            self._map_size = levels[0].shape[1]
+            self._store_texture("base_color_maps", levels, "rgba16float", "2d-array")
+
+    def _prepare_lights(self, lamps: Sequence[object], moved: bool) -> bool:
+        if not self._changed("lights", list(lamps)) and not moved:
+            return False
+        records, self._casters = lights.light_records(lamps, self._geometry.corners)
+        self._store("lights", records)
+        self.shadow_lights = lights.shadow_order(records)
+        self._prepare_shadows(len(self._casters))
+        return True
+
+    def _prepare_materials(self, meshes: Sequence[Mesh], relit: bool) -> None:
+        if not self._changed("materials", list(meshes)) and not relit:
+            return
+        records = geometry.materials(meshes, self._geometry, self._layers, self._map_size)
+        for layer, casts in enumerate(self._casters):
+            records["flags"][: len(casts)] |= np.uint32(MATERIAL_CASTS_SHADOW << layer) * np.array(casts)
+        self._store("materials", records)
+
+    def _prepare_shadows(self, layers: int) -> None:
+        self.shadow_version += 1
+        if len(self.shadow_views) == layers and "shadow_maps" in self._resources:
+            return
+        side = lights.SHADOW_SIZE if layers else 1
+        texture = self.device.texture(
+            size=(side, side),
+            format="depth32float",
+            layers=max(layers, 1),
+            usage=("sample", "render"),
+            label="shadow maps",
+        )
+        self._resources["shadow_maps"] = texture.create_view(dimension="2d-array")
+        self._sizes["shadow_maps"] = 4 * side * side * max(layers, 1)
+        self.shadow_views = [
+            texture.create_view(dimension="2d", base_array_layer=k, array_layer_count=1) for k in range(layers)
+        ]
+
+    def _prepare_environment(self, sky: Environment) -> None:
+        angle = np.radians(sky.rotation_deg)
+        self._frame["environment_rotation"] = np.cos(angle), np.sin(angle)
+        self._frame["environment_intensity"] = sky.intensity
+        if not self._changed("environment", [sky.pixels]):
+            return
+        levels = environment.mip_levels(sky.pixels)
+        self._frame["environment_sh"][:, :3] = environment.irradiance_sh(levels[0])
+        self._frame["environment_height"] = levels[0].shape[0]
+        self._frame["environment_max_lod"] = len(levels) - 1
+        filterable = self.device.float32_filterable
+        if not filterable:
+            levels = [np.minimum(level, environment.HALF_MAX) for level in levels]
+        rgba = [np.pad(level, ((0, 0), (0, 0), (0, 1)), constant_values=1.0)[None] for level in levels]
+        self._store_texture("env_map", rgba, "rgba32float" if filterable else "rgba16float", "2d")
+
+    def _changed(self, part: str, state: list[Any]) -> bool:
+        """Whether a part of the scene differs from the last call; objects are kept so that no id returns."""
+        before = self._seen.get(part)
+        same = before is not None and len(before) == len(state)
+        same = same and all(_same(a, b) for a, b in zip(before or [], state, strict=False))
+        self._seen[part] = state
+        return not same
+
+    def _store(self, name: str, records: np.ndarray) -> None:
+        buffer = self._resources.get(name)
+        if buffer is not None and self._sizes[name] == records.nbytes:
+            self.device.write(buffer, records)
+            return
+        self._resources[name] = self.device.buffer(records, "storage", name)
+        self._sizes[name] = records.nbytes
+
+    def _store_texture(self, name: str, levels: list[np.ndarray], format: str, dimension: str) -> None:
+        """Levels are (layers, H, W, 4), finest first."""
+        layers, height, width = levels[0].shape[:3]
+        texture = self.device.texture(
+            size=(width, height),
+            format=format,
+            layers=layers,
+            mips=len(levels),
+            usage=("sample", "copy"),
+            label=name,
+        )
+        for mip, level in enumerate(levels):
+            self.device.write_texture(texture, level, mip=mip)
+        self._resources[name] = texture.create_view(dimension=dimension)
+        bytes_per_texel = 16 if format == "rgba32float" else 8
+        self._sizes[name] = sum(level.size // 4 for level in levels) * bytes_per_texel
+
+
+def _placement(mesh: Mesh) -> list[Any]:
+    arrays = [mesh.vertices, mesh.faces, mesh.normals, mesh.uvs]
+    return [*arrays, mesh.position, mesh.rotation, mesh.scale, mesh.double_sided]
+
+
+def _same(a: Any, b: Any) -> bool:
+    return a is b or (isinstance(a, tuple | float | int | bool) and type(a) is type(b) and bool(a == b))

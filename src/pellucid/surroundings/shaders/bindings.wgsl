@@ -1,0 +1,20 @@
+// What every ray may ask of its surroundings, as group 1. A pass binds only the names that it uses.
+//!struct FrameParams from surroundings.layouts
+//!struct BvhNode from surroundings.layouts
+//!struct BvhTriangle from surroundings.layouts
+//!struct TriangleAttributes from surroundings.layouts
+//!struct Material from surroundings.layouts
+//!struct Light from surroundings.layouts
+
+@group(1) @binding(0) var<uniform> frame: FrameParams;
+@group(1) @binding(1) var env_map: texture_2d<f32>;
+@group(1) @binding(2) var env_sampler: sampler;
+@group(1) @binding(3) var<storage, read> bvh_nodes: array<BvhNode>;
+@group(1) @binding(4) var<storage, read> bvh_triangles: array<BvhTriangle>;
+@group(1) @binding(5) var<storage, read> triangle_attributes: array<TriangleAttributes>;
+@group(1) @binding(6) var<storage, read> materials: array<Material>;
+@group(1) @binding(7) var<storage, read> lights: array<Light>;
+@group(1) @binding(8) var base_color_maps: texture_2d_array<f32>;
+@group(1) @binding(9) var base_color_sampler: sampler;
+@group(1) @binding(10) var shadow_maps: texture_depth_2d_array;
+@group(1) @binding(11) var shadow_sampler: sampler_comparison;

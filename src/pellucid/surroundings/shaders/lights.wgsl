@@ -1,0 +1,79 @@
+// Light from lamps: how much arrives at a point, and from where.
+//!import surroundings/shaders/raycast
+//!import surroundings/shaders/shadow
+
+const LIGHT_DIRECTIONAL = 0u;
+const LIGHT_POINT = 1u;
+const LIGHT_AREA = 2u;
+const AREA_STRATA = 2u;  // an area light is sampled at AREA_STRATA^2 points
+
+struct LightSample {
+    direction: vec3f,   // unit, towards the light
+    irradiance: vec3f,  // on a surface that faces the light; zero in its shadow
+}
+
+fn light_sample_count(light: u32) -> u32 {
+    return select(1u, AREA_STRATA * AREA_STRATA, lights[light].kind == LIGHT_AREA);
+}
+
+fn sample_light(light: u32, index: u32, p_ws: vec3f, n_ws: vec3f) -> LightSample {
+    switch lights[light].kind {
+        case LIGHT_POINT: { return sample_point_light(light, p_ws, n_ws); }
+        case LIGHT_AREA: { return sample_area_light(light, index, p_ws, n_ws); }
+        default: { return sample_directional_light(light, p_ws, n_ws); }
+    }
+}
+
+fn sample_directional_light(light: u32, p_ws: vec3f, n_ws: vec3f) -> LightSample {
+    let direction = lights[light].direction;
+    if dot(direction, n_ws) <= 0.0 {
+        return LightSample(direction, vec3f(0.0));
+    }
+    return LightSample(direction, lights[light].power * shadow_visibility(light, p_ws, n_ws));
+}
+
+// Inverse square law: irradiance = intensity / distance^2
+fn sample_point_light(light: u32, p_ws: vec3f, n_ws: vec3f) -> LightSample {
+    let to_light = lights[light].position - p_ws;
+    let d2 = max(dot(to_light, to_light), 1e-12);
+    let direction = to_light * inverseSqrt(d2);
+    let seen = light_reaches(light, p_ws, n_ws, direction, sqrt(d2));
+    return LightSample(direction, lights[light].power * select(0.0, 1.0 / d2, seen));
+}
+
+// One stratum of a one-sided rectangle: irradiance = radiance cos(theta) area / distance^2 / samples
+fn sample_area_light(light: u32, index: u32, p_ws: vec3f, n_ws: vec3f) -> LightSample {
+    let cell = vec2f(f32(index % AREA_STRATA), f32(index / AREA_STRATA));
+    let st = (cell + light_jitter(p_ws, index + 31u * light)) / f32(AREA_STRATA) - 0.5;
+    let target_ws = lights[light].position + st.x * lights[light].edge_u + st.y * lights[light].edge_v;
+    let to_light = target_ws - p_ws;
+    let d2 = max(dot(to_light, to_light), 1e-12);
+    let direction = to_light * inverseSqrt(d2);
+    let cosine = -dot(direction, lights[light].direction);
+    if cosine <= 0.0 || !light_reaches(light, p_ws, n_ws, direction, sqrt(d2)) {
+        return LightSample(direction, vec3f(0.0));
+    }
+    let area = length(cross(lights[light].edge_u, lights[light].edge_v));
+    return LightSample(direction, lights[light].power * (cosine * area / (d2 * f32(AREA_STRATA * AREA_STRATA))));
+}
+
+fn light_reaches(light: u32, p_ws: vec3f, n_ws: vec3f, direction: vec3f, distance_m: f32) -> bool {
+    if dot(n_ws, direction) <= 0.0 {
+        return false;
+    }
+    if lights[light].shadow_layer < 0 {
+        return true;
+    }
+    let start = p_ws + n_ws * frame.ray_epsilon_m;
+    return !occluded(start, direction, distance_m - 2.0 * frame.ray_epsilon_m);
+}
+
+// Two numbers in 0..1 that differ from point to point and from frame to frame [jarzynski2020, pcg3d]
+fn light_jitter(p_ws: vec3f, salt: u32) -> vec2f {
+    var v = bitcast<vec3u>(p_ws) + vec3u(frame.sample_index, salt, 0u);
+    v = v * 1664525u + 1013904223u;
+    v.x += v.y * v.z; v.y += v.z * v.x; v.z += v.x * v.y;
+    v = v ^ (v >> vec3u(16u));
+    v.x += v.y * v.z; v.y += v.z * v.x; v.z += v.x * v.y;
+    return vec2f(v.xy >> vec2u(8u)) / 16777216.0;
+}

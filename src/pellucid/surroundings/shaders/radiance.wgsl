@@ -1,0 +1,11 @@
+// What a ray that meets no more refractive matter sees.
+//!import surroundings/shaders/shade
+
+// First opaque surface, shaded, or else the environment
+fn radiance_along(origin_ws: vec3f, direction_ws: vec3f) -> vec3f {
+    let hit = trace_opaque(origin_ws, direction_ws, 1e30);
+    if hit.valid {
+        return shade_hit(hit, origin_ws, direction_ws);
+    }
+    return environment_radiance(normalize(direction_ws));
+}

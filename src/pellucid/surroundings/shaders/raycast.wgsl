@@ -1,0 +1,126 @@
+// Rays against the opaque triangles, through the hierarchy of bvh.py, nearer child first.
+//!import surroundings/shaders/bindings
+
+const BVH_STACK = 32u;  // bvh.MAX_DEPTH + 2
+const BVH_MISS = 3.0e38;
+
+struct SurfaceHit {
+    t: f32,              // in lengths of the direction; t_max where nothing is hit
+    valid: bool,
+    triangle: u32,
+    barycentric: vec2f,  // weights of the second and third corner
+}
+
+// Nearest opaque surface with 0 < t < t_max
+fn trace_opaque(origin_ws: vec3f, direction_ws: vec3f, t_max: f32) -> SurfaceHit {
+    var hit = SurfaceHit(t_max, false, 0u, vec2f(0.0));
+    if frame.triangle_count == 0u {
+        return hit;
+    }
+    let inverse = bvh_inverse(direction_ws);
+    var stack: array<u32, BVH_STACK>;
+    var top = 0u;
+    var index = 0u;
+    if bvh_entry(0u, origin_ws, inverse, t_max) == BVH_MISS {
+        return hit;
+    }
+    loop {
+        let link = bvh_nodes[index].link;
+        let count = bvh_nodes[index].count;
+        if count == 0u {
+            let t_left = bvh_entry(index + 1u, origin_ws, inverse, hit.t);
+            let t_right = bvh_entry(link, origin_ws, inverse, hit.t);
+            let left_first = t_left <= t_right;
+            if max(t_left, t_right) < BVH_MISS {
+                stack[top] = select(index + 1u, link, left_first);
+                top += 1u;
+            }
+            if min(t_left, t_right) < BVH_MISS {
+                index = select(link, index + 1u, left_first);
+                continue;
+            }
+        }
+        for (var k = link; k < link + count; k++) {
+            let found = triangle_entry(k, origin_ws, direction_ws, true);
+            if found.x > 0.0 && found.x < hit.t {
+                hit = SurfaceHit(found.x, true, k, found.yz);
+            }
+        }
+        if top == 0u {
+            break;
+        }
+        top -= 1u;
+        index = stack[top];
+    }
+    return hit;
+}
+
+// Whether any opaque surface, from either side, lies at 0 < t < t_max
+fn occluded(origin_ws: vec3f, direction_ws: vec3f, t_max: f32) -> bool {
+    if frame.triangle_count == 0u {
+        return false;
+    }
+    let inverse = bvh_inverse(direction_ws);
+    var stack: array<u32, BVH_STACK>;
+    var top = 1u;
+    stack[0] = 0u;
+    while top > 0u {
+        top -= 1u;
+        let index = stack[top];
+        if bvh_entry(index, origin_ws, inverse, t_max) == BVH_MISS {
+            continue;
+        }
+        let link = bvh_nodes[index].link;
+        let count = bvh_nodes[index].count;
+        if count == 0u {
+            stack[top] = link;
+            stack[top + 1u] = index + 1u;
+            top += 2u;
+        }
+        for (var k = link; k < link + count; k++) {
+            let t = triangle_entry(k, origin_ws, direction_ws, false).x;
+            if t > 0.0 && t < t_max {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+// Reciprocal direction without infinities, whose products with zero would be undefined
+fn bvh_inverse(direction: vec3f) -> vec3f {
+    let tiny = vec3f(1e-20);
+    let safe = select(direction, select(-tiny, tiny, direction >= vec3f(0.0)), abs(direction) < tiny);
+    return 1.0 / safe;
+}
+
+// Distance at which a ray enters a node's box, or BVH_MISS; the exit is widened by two roundings [ize2013, sec. 3.2]
+fn bvh_entry(index: u32, origin: vec3f, inverse: vec3f, t_max: f32) -> f32 {
+    let a = (bvh_nodes[index].lower - origin) * inverse;
+    let b = (bvh_nodes[index].upper - origin) * inverse;
+    let low = min(a, b);
+    let high = max(a, b);
+    let t_in = max(max(low.x, low.y), max(low.z, 0.0));
+    let t_out = min(min(high.x, high.y), min(high.z, t_max)) * 1.0000004;
+    return select(BVH_MISS, t_in, t_in <= t_out);
+}
+
+// Where a ray meets a triangle: (t, u, v), t negative for none
+fn triangle_entry(index: u32, origin: vec3f, direction: vec3f, cull: bool) -> vec3f {
+    let found = triangle_plane_entry(index, origin, direction);
+    let culled = cull && found.w < 0.0 && bvh_triangles[index].single_sided != 0u;
+    let inside = found.y >= 0.0 && found.z >= 0.0 && found.y + found.z <= 1.0;
+    return select(vec3f(-1.0), found.xyz, inside && !culled && found.w != 0.0);
+}
+
+// Where a ray meets a triangle's plane: (t, u, v, determinant) [moller1997, eq. 6]
+fn triangle_plane_entry(index: u32, origin: vec3f, direction: vec3f) -> vec4f {
+    let corner = bvh_triangles[index].corner_0;
+    let e1 = bvh_triangles[index].corner_1 - corner;
+    let e2 = bvh_triangles[index].corner_2 - corner;
+    let p = cross(direction, e2);
+    let determinant = dot(e1, p);
+    let q = cross(origin - corner, e1);
+    let scaled = vec3f(dot(e2, q), dot(origin - corner, p), dot(direction, q));
+    return vec4f(scaled / select(determinant, 1.0, determinant == 0.0), determinant);
+}

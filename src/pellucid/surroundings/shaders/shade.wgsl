@@ -1,0 +1,65 @@
+// Radiance that an opaque surface sends to a viewer.
+//!import surroundings/shaders/camera
+//!import surroundings/shaders/environment
+//!import surroundings/shaders/ggx
+//!import surroundings/shaders/lights
+//!import surroundings/shaders/surface
+
+const SHADE_MIN_ALPHA = 0.002;  // a lamp is a point: a perfect mirror would show it infinitely bright
+
+// Lambert under GGX. What the lobe reflects is taken from the diffuse share, so a white surface in a uniform
+// environment returns just that environment, at any roughness.
+fn shade_surface(p_ws: vec3f, n_ws: vec3f, uv: vec2f, material: u32, view_ws: vec3f) -> vec3f {
+    let n_dot_v = clamp(dot(n_ws, view_ws), 1e-4, 1.0);
+    let roughness = materials[material].roughness;
+    let f0 = materials[material].specular;
+    let alpha = max(roughness * roughness, SHADE_MIN_ALPHA);
+    let specular = ggx_albedo(n_dot_v, roughness, f0);
+    let diffuse = (1.0 - specular) * base_color(material, uv, p_ws, n_dot_v) / GGX_PI;
+    var radiance = materials[material].emission + diffuse * environment_irradiance(n_ws);
+    if specular > 0.0 {
+        radiance += specular * environment_radiance_blurred(reflect(-view_ws, n_ws), environment_lod(alpha));
+    }
+    for (var light = 0u; light < frame.light_count; light++) {
+        let samples = light_sample_count(light);
+        for (var k = 0u; k < samples; k++) {
+            let sample = sample_light(light, k, p_ws, n_ws);
+            let n_dot_l = dot(n_ws, sample.direction);
+            if n_dot_l > 0.0 && any(sample.irradiance > vec3f(0.0)) {
+                let brdf = diffuse + specular_lobe(n_ws, view_ws, sample.direction, n_dot_l, n_dot_v, alpha, f0);
+                radiance += brdf * sample.irradiance * n_dot_l;
+            }
+        }
+    }
+    return radiance;
+}
+
+// D V F [walter2007, eq. 20], 1/sr
+fn specular_lobe(n: vec3f, v: vec3f, l: vec3f, n_dot_l: f32, n_dot_v: f32, alpha: f32, f0: f32) -> f32 {
+    if f0 <= 0.0 {
+        return 0.0;
+    }
+    let h = normalize(v + l);
+    return ggx_distribution(saturate(dot(n, h)), alpha) * ggx_visibility(n_dot_l, n_dot_v, alpha)
+        * lobe_fresnel(dot(v, h), f0);
+}
+
+// Base colour, its map read at the level where a texel is as large as the pixel's footprint on the surface
+fn base_color(material: u32, uv: vec2f, p_ws: vec3f, n_dot_v: f32) -> vec3f {
+    let flat_color = materials[material].base_color;
+    let layer = materials[material].base_color_layer;
+    if layer < 0 {
+        return flat_color;
+    }
+    let texels = materials[material].texels_per_m * footprint_m(p_ws) * inverseSqrt(n_dot_v);
+    let lod = max(log2(max(texels, 1e-6)), 0.0);
+    let at = vec2f(uv.x, 1.0 - uv.y);
+    return flat_color * textureSampleLevel(base_color_maps, base_color_sampler, at, layer, lod).rgb;
+}
+
+// Radiance back along a ray from where it hit
+fn shade_hit(hit: SurfaceHit, origin_ws: vec3f, direction_ws: vec3f) -> vec3f {
+    let view_ws = -normalize(direction_ws);
+    let surface = surface_at(hit.triangle, hit.barycentric, view_ws);
+    return shade_surface(surface.p_ws, surface.n_ws, surface.uv, surface.material, view_ws);
+}

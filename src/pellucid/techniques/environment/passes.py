@@ -1,0 +1,52 @@
+"""The environment where the picture shows nothing nearer."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from pellucid.gpu.kernel import RenderPass
+
+if TYPE_CHECKING:
+    from pellucid.gpu import Device
+    from pellucid.gpu.timing import PassTimer
+    from pellucid.surroundings import Surroundings
+
+
+class Sky:
+    """Fills the background.
+
+    Parameters
+    ----------
+    device : where to draw.
+    """
+
+    def __init__(self, device: Device) -> None:
+        self._pass = RenderPass(
+            device,
+            "techniques/environment/shaders/sky",
+            targets=("rgba32float",),
+            depth="depth32float",
+            depth_compare="greater-equal",  # at depth 0 this holds only where nothing was drawn
+            depth_write=False,
+        )
+
+    def prepare(self, surroundings: Surroundings) -> None:
+        """Nothing of its own: the environment belongs to the surroundings, which every ray shares."""
+
+    def draw(
+        self,
+        encoder: Any,
+        color: Any,
+        depth: Any,
+        surroundings: Surroundings,
+        timer: PassTimer | None = None,
+    ) -> None:
+        """Draw where `depth` is 0; keeps the rest of `color` (rgba32float) and all of `depth`."""
+        self._pass.run(
+            encoder,
+            color=[color],
+            depth=depth,
+            bindings=surroundings.bindings,
+            timer=timer,
+            label="sky",
+        )

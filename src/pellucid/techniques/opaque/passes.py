@@ -1,0 +1,128 @@
+"""Opaque meshes: shadow maps from the lights' side, then colour and depth from the camera's."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pellucid.gpu.kernel import RenderPass
+
+if TYPE_CHECKING:
+    from pellucid.gpu import Device
+    from pellucid.gpu.timing import PassTimer
+    from pellucid.surroundings import Surroundings
+
+COLOR_FORMAT = "rgba32float"
+DEPTH_FORMAT = "depth32float"
+
+
+class Opaque:
+    """Draws the opaque meshes of the surroundings.
+
+    Parameters
+    ----------
+    device : where to draw.
+    """
+
+    def __init__(self, device: Device) -> None:
+        self.device = device
+        self._shadow = RenderPass(
+            device,
+            "techniques/opaque/shaders/shadow_depth",
+            fragment=None,
+            targets=(),
+            depth=DEPTH_FORMAT,
+            depth_compare="less",
+        )
+        self._visibility = RenderPass(
+            device,
+            "techniques/opaque/shaders/visibility",
+            targets=("r32uint",),
+            depth=DEPTH_FORMAT,
+            depth_compare="greater",
+        )
+        self._shading = RenderPass(
+            device,
+            "techniques/opaque/shaders/shading",
+            targets=(COLOR_FORMAT,),
+            depth=DEPTH_FORMAT,
+            depth_compare="less",  # against depth 0: only where something was drawn
+            depth_write=False,
+        )
+        self._triangles: Any = None
+        self._shadow_lights: list[Any] = []
+        self._drawn: tuple[Surroundings, int] | None = None
+
+    def prepare(self, surroundings: Surroundings) -> None:
+        """Upload which light each shadow map belongs to."""
+        layers = surroundings.shadow_lights
+        while len(self._shadow_lights) < len(layers):
+            self._shadow_lights.append(self.device.buffer(16, "uniform", "shadow light"))
+        for layer, light in enumerate(layers):
+            self.device.write(self._shadow_lights[layer], np.array([light, layer, 0, 0], np.uint32))
+
+    def illuminate(self, encoder: Any, surroundings: Surroundings, timer: PassTimer | None = None) -> bool:
+        """Encode the shadow maps, if a mesh or a light changed since they were drawn; tells whether it did."""
+        state = (surroundings, surroundings.shadow_version)
+        if self._drawn == state:
+            return False
+        self.prepare(surroundings)
+        for layer, view in enumerate(surroundings.shadow_views):
+            self._shadow.run(
+                encoder,
+                depth=view,
+                clear_depth=1.0,
+                bindings={**surroundings.bindings, "shadow_light": self._shadow_lights[layer]},
+                vertices=3 * surroundings.triangle_count,
+                timer=timer,
+                label="shadow",
+            )
+        self._drawn = state
+        return True
+
+    def draw(
+        self,
+        encoder: Any,
+        color: Any,
+        depth: Any,
+        surroundings: Surroundings,
+        timer: PassTimer | None = None,
+    ) -> None:
+        """Clear both targets and draw every mesh: first which triangle each pixel shows, then its light.
+
+        Shading once a pixel spares the pixels that small triangles share and hide from one another.
+
+        Parameters
+        ----------
+        color : view of an rgba32float target of the surroundings' size, receives linear radiance; 0 where nothing is.
+        depth : view of a depth32float target, receives reversed depth; 0 where nothing is.
+        """
+        triangles = self._triangle_target(surroundings.size)
+        self._visibility.run(
+            encoder,
+            color=[triangles.create_view()],
+            depth=depth,
+            clear=[(0.0, 0.0, 0.0, 0.0)],
+            clear_depth=0.0,
+            bindings=surroundings.bindings,
+            vertices=3 * surroundings.triangle_count,
+            timer=timer,
+            label="opaque visibility",
+        )
+        self._shading.run(
+            encoder,
+            color=[color],
+            depth=depth,
+            clear=[(0.0, 0.0, 0.0, 0.0)],
+            bindings={**surroundings.bindings, "visible_triangles": triangles},
+            timer=timer,
+            label="opaque shading",
+        )
+
+    def _triangle_target(self, size: tuple[int, int]) -> Any:
+        if self._triangles is None or (self._triangles.width, self._triangles.height) != size:
+            self._triangles = self.device.texture(
+                size=size, format="r32uint", usage=("sample", "render"), label="visible triangles"
+            )
+        return self._triangles

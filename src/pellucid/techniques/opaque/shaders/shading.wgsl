@@ -1,0 +1,21 @@
+// Radiance of the triangle that each pixel shows, by the same shading as a ray that hits it.
+//!import surroundings/shaders/shade
+
+@group(0) @binding(0) var visible_triangles: texture_2d<u32>;
+
+// One triangle over the picture at the depth of infinity, drawn where something lies nearer
+@vertex
+fn vs_main(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4f {
+    let corner = vec2f(f32(vertex & 1u), f32(vertex >> 1u));
+    return vec4f(4.0 * corner - 1.0, 0.0, 1.0);
+}
+
+@fragment
+fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let triangle = max(textureLoad(visible_triangles, vec2i(position.xy), 0).r, 1u) - 1u;
+    let ray = camera_ray(position.xy);
+    let found = triangle_plane_entry(triangle, ray.origin, ray.direction);
+    let u = saturate(found.y);
+    let hit = SurfaceHit(found.x, true, triangle, vec2f(u, clamp(found.z, 0.0, 1.0 - u)));
+    return vec4f(shade_hit(hit, ray.origin, ray.direction), 1.0);
+}
