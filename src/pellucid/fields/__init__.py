@@ -1,5 +1,6 @@
 """Data that the laws of light act on: volumes, distances, meshes on voxels, analytic shapes. NumPy only."""
 
+from pellucid.fields import shapes
 from pellucid.fields.distance import homogeneous_distance
 from pellucid.fields.gradient import central, sobel
 from pellucid.fields.smoothing import gaussian
@@ -8,5 +9,6 @@ from pellucid.fields.volume import Region, Volume
 from pellucid.fields.voxelise import signed_distance
 
 __all__ = [
-    "Region", "Volume", "central", "gaussian", "homogeneous_distance", "signed_distance", "sobel", "surface_nets",
+    "Region", "Volume", "central", "gaussian", "homogeneous_distance", "shapes", "signed_distance", "sobel",
+    "surface_nets",
 ]  # fmt: skip

@@ -103,7 +103,7 @@ def _cells_around(voxel: Ints, axis: int, cells: Ints) -> Ints:
         cell = voxel.copy()
         cell[:, u] += du
         cell[:, v] += dv
-        there = ((cell >= 0) & (cell < cells)).all(axis=1)
+        there = np.all((cell >= 0) & (cell < cells), axis=1)
         flat = np.ravel_multi_index(tuple(np.where(there[:, None], cell, 0).T), tuple(cells))
         around[:, n] = np.where(there, flat, -1)
     return around
