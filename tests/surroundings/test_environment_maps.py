@@ -46,6 +46,28 @@ def test_irradiance_of_a_band_limited_environment_is_the_integral() -> None:
     np.testing.assert_allclose(by_sh, direct, rtol=2e-4)
 
 
+def test_glossy_levels_are_the_means_under_their_lobes() -> None:
+    """By plain summation over all texels, at the poles and elsewhere."""
+    pixels = np.random.default_rng(5).gamma(0.5, size=(256, 512, 3)).astype(np.float32)
+    pixels[20:60, 100:300] += 20.0
+    levels = environment.mip_levels(pixels)
+    toward = directions(128, 256).reshape(-1, 3)
+    source = levels[1].reshape(-1, 3)
+    solid = np.repeat(environment.row_solid_angles(128) / 256, 256)
+    for k, level in enumerate(environment.glossy_levels(levels)[:3]):
+        alpha = environment.GLOSSY_ALPHA * 2**k
+        height, width = level.shape[:2]
+        for row, column in ((0, 0), (0, width // 2), (height // 3, 5), (height - 1, 7)):
+            cosine = toward @ directions(height, width)[row, column]
+            lobe = solid * np.maximum(cosine, 0) / ((1 + cosine) / 2 * (alpha**2 - 1) + 1) ** 2
+            np.testing.assert_allclose(level[row, column], lobe @ source / lobe.sum(), rtol=0.02)
+
+
+def test_a_uniform_environment_stays_uniform_in_every_glossy_level() -> None:
+    for level in environment.glossy_levels(environment.mip_levels(np.full((4, 8, 3), 0.7, np.float32))):
+        np.testing.assert_allclose(level, 0.7, rtol=1e-6)
+
+
 def test_resampling_up_and_back_returns_the_image() -> None:
     image = np.random.default_rng(4).random((7, 5, 3))
     np.testing.assert_allclose(area_resample(area_resample(image, (28, 20)), (7, 5)), image, rtol=1e-12)

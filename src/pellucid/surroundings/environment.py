@@ -7,6 +7,9 @@ import numpy as np
 from pellucid.surroundings.resample import area_resample
 
 MAX_HEIGHT = 4096
+GLOSSY_HEIGHT = 128
+GLOSSY_LEVELS = 6
+GLOSSY_ALPHA = 0.04  # sharper lobes are read from the map's own levels
 HALF_MAX = 65504.0
 
 
@@ -36,6 +39,44 @@ def mip_levels(pixels: np.ndarray) -> list[np.ndarray]:
 
 def _resized(level: np.ndarray, size: tuple[int, int]) -> np.ndarray:
     return area_resample(level, size, lambda v: -np.cos(np.pi * v))
+
+
+def glossy_levels(levels: list[np.ndarray]) -> list[np.ndarray]:
+    """The environment as rough mirrors show it, seen straight on [karis2013, split sum].
+
+    Level k holds the mean under a GGX lobe of alpha = GLOSSY_ALPHA 2^k. Its texels halve as the lobe doubles, so
+    a lobe always covers some four of them and neither the poles nor the texels show.
+
+    Parameters
+    ----------
+    levels : of `mip_levels`.
+
+    Returns
+    -------
+    list of (h, 2 h, 3) float32, the first of GLOSSY_HEIGHT rows.
+    """
+    wanted = [level for level in levels if level.shape[0] >= GLOSSY_HEIGHT] or levels[:1]
+    source = _resized(wanted[-1], (GLOSSY_HEIGHT, 2 * GLOSSY_HEIGHT))
+    found = []
+    for k in range(GLOSSY_LEVELS):
+        height = GLOSSY_HEIGHT >> k
+        source = _resized(source, (height, 2 * height))
+        found.append(_lobe_means(source, GLOSSY_ALPHA * 2**k).astype(np.float32))
+    return found
+
+
+def _lobe_means(pixels: np.ndarray, alpha: float) -> np.ndarray:
+    """Mean under the lobe D(h) max(n.l, 0) about each texel's direction; its azimuth by Fourier transform."""
+    height, width = pixels.shape[:2]
+    theta = np.pi * (np.arange(height) + 0.5) / height
+    turn = 2.0 * np.pi * np.arange(width) / width
+    along, across = np.outer(np.cos(theta), np.cos(theta)), np.outer(np.sin(theta), np.sin(theta))
+    cosine = along[..., None] + across[..., None] * np.cos(turn)
+    lobe = np.maximum(cosine, 0.0) / (0.5 * (1.0 + cosine) * (alpha**2 - 1.0) + 1.0) ** 2
+    lobe *= row_solid_angles(height)[:, None]
+    lobe /= lobe.sum(axis=(1, 2), keepdims=True)
+    spectrum = np.einsum("ijm,jmc->imc", np.fft.rfft(lobe, axis=2), np.fft.rfft(pixels, axis=1))
+    return np.maximum(np.fft.irfft(spectrum, n=width, axis=1), 0.0)
 
 
 def irradiance_sh(pixels: np.ndarray) -> np.ndarray:

@@ -186,11 +186,15 @@ class Surroundings:
         self._frame["environment_sh"][:, :3] = environment.irradiance_sh(levels[0])
         self._frame["environment_height"] = levels[0].shape[0]
         self._frame["environment_max_lod"] = len(levels) - 1
+        self._store_environment("env_map", levels)
+        self._store_environment("env_glossy", environment.glossy_levels(levels))
+
+    def _store_environment(self, name: str, levels: list[np.ndarray]) -> None:
         filterable = self.device.float32_filterable
         if not filterable:
             levels = [np.minimum(level, environment.HALF_MAX) for level in levels]
         rgba = [np.pad(level, ((0, 0), (0, 0), (0, 1)), constant_values=1.0)[None] for level in levels]
-        self._store_texture("env_map", rgba, "rgba32float" if filterable else "rgba16float", "2d")
+        self._store_texture(name, rgba, "rgba32float" if filterable else "rgba16float", "2d")
 
     def _changed(self, part: str, state: list[Any]) -> bool:
         """Whether a part of the scene differs from the last call; objects are kept so that no id returns."""

@@ -18,3 +18,4 @@
 @group(1) @binding(9) var base_color_sampler: sampler;
 @group(1) @binding(10) var shadow_maps: texture_depth_2d_array;
 @group(1) @binding(11) var shadow_sampler: sampler_comparison;
+@group(1) @binding(12) var env_glossy: texture_2d<f32>;

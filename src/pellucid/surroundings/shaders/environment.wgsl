@@ -2,6 +2,7 @@
 //!import surroundings/shaders/bindings
 
 const ENVIRONMENT_PI = 3.14159265358979;
+const ENVIRONMENT_GLOSSY_ALPHA = 0.04;  // environment.GLOSSY_ALPHA
 
 // World to map: the map is turned about +Y by the scene's rotation
 fn environment_space(direction_ws: vec3f) -> vec3f {
@@ -37,6 +38,16 @@ fn environment_irradiance(normal_ws: vec3f) -> vec3f {
     e += frame.environment_sh[6].rgb * (n.x * n.z) + frame.environment_sh[7].rgb * (3.0 * n.y * n.y - 1.0);
     e += frame.environment_sh[8].rgb * (n.x * n.x - n.z * n.z);
     return frame.environment_intensity * max(e, vec3f(0.0));
+}
+
+// Mean radiance that a mirror of GGX roughness alpha shows in a direction, see environment.glossy_levels
+fn environment_glossy(direction_ws: vec3f, alpha: f32) -> vec3f {
+    if alpha < ENVIRONMENT_GLOSSY_ALPHA {
+        return environment_radiance_blurred(direction_ws, environment_lod(alpha));
+    }
+    let uv = environment_uv(environment_space(direction_ws));
+    let lod = log2(alpha / ENVIRONMENT_GLOSSY_ALPHA);
+    return frame.environment_intensity * textureSampleLevel(env_glossy, env_sampler, uv, lod).rgb;
 }
 
 // Level whose texel is as large as the peak of a GGX lobe, one sample of solid angle 1 / pdf

@@ -62,20 +62,22 @@ fn occluded(origin_ws: vec3f, direction_ws: vec3f, t_max: f32) -> bool {
     }
     let inverse = bvh_inverse(direction_ws);
     var stack: array<u32, BVH_STACK>;
-    var top = 1u;
-    stack[0] = 0u;
-    while top > 0u {
-        top -= 1u;
-        let index = stack[top];
-        if bvh_entry(index, origin_ws, inverse, t_max) == BVH_MISS {
-            continue;
-        }
+    var top = 0u;
+    var index = 0u;
+    loop {
         let link = bvh_nodes[index].link;
         let count = bvh_nodes[index].count;
         if count == 0u {
-            stack[top] = link;
-            stack[top + 1u] = index + 1u;
-            top += 2u;
+            let left = bvh_entry(index + 1u, origin_ws, inverse, t_max) < BVH_MISS;
+            let right = bvh_entry(link, origin_ws, inverse, t_max) < BVH_MISS;
+            if left && right {
+                stack[top] = link;
+                top += 1u;
+            }
+            if left || right {
+                index = select(link, index + 1u, left);
+                continue;
+            }
         }
         for (var k = link; k < link + count; k++) {
             let t = triangle_entry(k, origin_ws, direction_ws, false).x;
@@ -83,6 +85,11 @@ fn occluded(origin_ws: vec3f, direction_ws: vec3f, t_max: f32) -> bool {
                 return true;
             }
         }
+        if top == 0u {
+            break;
+        }
+        top -= 1u;
+        index = stack[top];
     }
     return false;
 }

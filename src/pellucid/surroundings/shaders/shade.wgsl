@@ -18,7 +18,7 @@ fn shade_surface(p_ws: vec3f, n_ws: vec3f, uv: vec2f, material: u32, view_ws: ve
     let diffuse = (1.0 - specular) * base_color(material, uv, p_ws, n_dot_v) / GGX_PI;
     var radiance = materials[material].emission + diffuse * environment_irradiance(n_ws);
     if specular > 0.0 {
-        radiance += specular * environment_radiance_blurred(reflect(-view_ws, n_ws), environment_lod(alpha));
+        radiance += specular * environment_glossy(reflect(-view_ws, n_ws), alpha);
     }
     for (var light = 0u; light < frame.light_count; light++) {
         let samples = light_sample_count(light);
