@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -93,38 +93,63 @@ def _refuse_many_faces(file: Path, faces: int) -> None:
         raise AssetError(file, f"has {faces:,} faces, more than {MAX_FACES:,}", "decimate it first")
 
 
-def _triangle_parts(file: Path, suffix: str) -> list[Any]:
-    """The trimesh geometries of the file that have faces, each moved to its place in the file's scene."""
+class _Part(NamedTuple):
+    """One geometry of a file and its place in the file's scene, (4, 4)."""
+
+    mesh: Any
+    placement: np.ndarray
+
+    def vertices(self) -> np.ndarray:
+        with np.errstate(invalid="ignore"):  # a vertex at infinity is reported, not warned about
+            return np.asarray(self.mesh.vertices, np.float64) @ self.placement[:3, :3].T + self.placement[:3, 3]
+
+    def faces(self) -> np.ndarray:
+        mirrored = np.linalg.det(self.placement[:3, :3]) < 0.0
+        faces = np.asarray(self.mesh.faces)
+        return faces[:, ::-1] if mirrored else faces
+
+    def normals(self) -> np.ndarray | None:
+        stored = _stored_normals(self.mesh)
+        if stored is None:
+            return None
+        turned = stored @ np.linalg.inv(self.placement[:3, :3])
+        return np.asarray(turned / np.linalg.norm(turned, axis=1, keepdims=True))
+
+
+def _triangle_parts(file: Path, suffix: str) -> list[_Part]:
+    """The geometries of the file that have faces."""
     import trimesh
 
     log = logging.getLogger("trimesh")
     was_disabled, log.disabled = log.disabled, True  # what matters is raised below; the rest only alarms
     try:
         loaded = trimesh.load_scene(file, process=False)
-        parts = [part for part in loaded.dump() if isinstance(part, trimesh.Trimesh) and len(part.faces)]
+        placed = [loaded.graph[node] for node in loaded.graph.nodes_geometry]
+        parts = [_Part(loaded.geometry[name], np.asarray(matrix, np.float64)) for matrix, name in placed]
+        parts = [part for part in parts if isinstance(part.mesh, trimesh.Trimesh) and len(part.mesh.faces)]
         if suffix == ".stl":  # the format has no shared vertices at all
             for part in parts:
-                part.merge_vertices()
+                part.mesh.merge_vertices()
     except Exception as error:  # trimesh lets whatever its parsers meet come through
-        reason = f"is truncated or not a {suffix[1:].upper()} mesh: {type(error).__name__}: {error}"
+        reason = f"is truncated or not {suffix[1:].upper()}: {type(error).__name__}: {error}"
         raise AssetError(file, reason, "open and export it again in a 3-D program") from error
     finally:
         log.disabled = was_disabled
     return parts
 
 
-def _merged(parts: Sequence[Any], name: str) -> MeshData:
-    offsets = np.cumsum([0] + [len(part.vertices) for part in parts[:-1]])
-    colors, maps = zip(*(_material(part) for part in parts), strict=True)
-    weights = [len(part.faces) for part in parts]
+def _merged(parts: Sequence[_Part], name: str) -> MeshData:
+    offsets = np.cumsum([0] + [len(part.mesh.vertices) for part in parts[:-1]])
+    colors, maps = zip(*(_material(part.mesh) for part in parts), strict=True)
+    weights = [len(part.mesh.faces) for part in parts]
     known = [(color, weight) for color, weight in zip(colors, weights, strict=True) if color is not None]
     base = np.average([c for c, _ in known], axis=0, weights=[w for _, w in known]) if known else None
     shared = maps[0] if all(image is maps[0] for image in maps) else None
     return MeshData(
-        vertices=np.concatenate([np.asarray(part.vertices, np.float64) for part in parts]),
-        faces=np.concatenate([np.asarray(p.faces) + o for p, o in zip(parts, offsets, strict=True)]).astype(np.int32),
-        normals=_stacked([_stored_normals(part) for part in parts]),
-        uvs=_stacked([_stored_uvs(part) for part in parts]),
+        vertices=np.concatenate([part.vertices() for part in parts]),
+        faces=np.concatenate([p.faces() + o for p, o in zip(parts, offsets, strict=True)]).astype(np.int32),
+        normals=_stacked([part.normals() for part in parts]),
+        uvs=_stacked([_stored_uvs(part.mesh) for part in parts]),
         base_color=None if base is None else (float(base[0]), float(base[1]), float(base[2])),
         base_color_map=None if shared is None else _linear_map(shared),
         name=name,
@@ -159,7 +184,10 @@ def _material(part: Any) -> tuple[np.ndarray | None, Any]:
     material = getattr(part.visual, "material", None)
     if material is None or part.visual.kind != "texture":
         return None, None
-    image = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
+    image = getattr(material, "baseColorTexture", None)
+    image = getattr(material, "image", None) if image is None else image
+    if not type(image).__module__.startswith("PIL."):  # without Pillow trimesh leaves an object that only raises
+        image = None
     factor = getattr(material, "baseColorFactor", None)
     if factor is not None:  # glTF states factors in linear light, trimesh keeps them as bytes
         return np.asarray(factor, np.float64)[:3] / (255.0 if np.asarray(factor).dtype == np.uint8 else 1.0), image

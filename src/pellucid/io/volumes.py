@@ -70,8 +70,11 @@ def write_arrays(path: str | PathLike[str], arrays: Mapping[str, np.ndarray]) ->
     """
     file = Path(path)
     suffix_of(file, (".npz",), "written as a set of arrays")
+    for name, array in arrays.items():
+        if array.dtype.hasobject:
+            raise AssetError(file, f"cannot hold the Python objects of {name!r}", "give plain numbers")
     with replacing(file) as part:
-        np.savez(part, allow_pickle=False, **arrays)  # type: ignore[arg-type]
+        np.savez(part, **arrays)  # type: ignore[arg-type]
 
 
 @contextmanager

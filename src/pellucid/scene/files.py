@@ -91,11 +91,12 @@ def _parsed(file: Path, suffix: str) -> Any:
 
 def _explained(file: Path, data: Any, error: ValidationError) -> SceneError:
     """The first fault that pydantic found, in the words of a scene file."""
-    found = error.errors(include_url=False)
-    fault = found[0]
-    where = _field_path(fault, data)
+    found = [(_field_path(fault, data), fault) for fault in error.errors(include_url=False)]
+    # of the variants that were tried, the one that came further is the one that was meant
+    meant = [pair for pair in found if not any(path.startswith(f"{pair[0]}.") for path, _ in found)]
+    where, fault = meant[0]
     reason, remedy = _words(fault)
-    others = {_field_path(other, data) for other in found} - {where}
+    others = {path for path, _ in meant} - {where}
     more = f"; also wrong: {', '.join(sorted(others))}" if others else ""
     return SceneError(f"{file}: {where or 'the scene'}", reason + more, remedy)
 
@@ -109,10 +110,13 @@ def _words(fault: ErrorDetails) -> tuple[str, str]:
     if fault["type"] == "extra_forbidden":
         close = difflib.get_close_matches(str(fault["loc"][-1]), KNOWN_FIELDS, n=1)
         return "is not a field that belongs here", f"did you mean {close[0]!r}?" if close else "remove it"
-    if fault["type"] in ("unknown_kind", "finite_number"):
+    if fault["type"] == "model_type":
+        return "must be a table of named fields", 'such as { "camera": { "position": [0, 0, 1] } }'
+    if fault["type"] == "unknown_kind":
         return fault["msg"], ""
     shown = repr(fault["input"])
-    return f"{fault['msg'][0].lower()}{fault['msg'][1:]}, got {shown if len(shown) < 60 else shown[:57] + '...'}", ""
+    wish = fault["msg"].removeprefix("Input should ")
+    return f"should {wish}, got {shown if len(shown) < 60 else shown[:57] + '...'}", ""
 
 
 def _field_path(fault: ErrorDetails, data: Any) -> str:

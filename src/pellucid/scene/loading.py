@@ -93,7 +93,7 @@ def _mesh(part: schema.MeshBase, folder: Path) -> Mesh:
         arrays: dict[str, Any] = dict(read_arrays(path))
         if not {"vertices", "faces"} <= set(arrays) <= {"vertices", "faces", "normals", "uvs"}:
             raise AssetError(path, f"holds {sorted(arrays)}, not a mesh", "it needs vertices and faces")
-        return Mesh(**arrays, **given, origin=Origin({"arrays": str(path.resolve())}))
+        return Mesh(**arrays, **given)  # no recipe: saving under the same name writes these arrays anew
     return MESHES[part.kind](**given)  # type: ignore[attr-defined]
 
 

@@ -87,7 +87,14 @@ class RefractiveVolume(SceneObject):
 
     @classmethod
     def from_mesh(
-        cls, mesh: Any, medium: Substance, resolution: int = 128, ambient_n: float = 1.0, **placement: Any
+        cls,
+        mesh: Any,
+        medium: Substance,
+        resolution: int = 128,
+        ambient_n: float = 1.0,
+        *,
+        progress: Callable[[float], None] | None = None,
+        **placement: Any,
     ) -> Self:
         """The inside of a closed mesh, filled with a medium.
 
@@ -98,6 +105,7 @@ class RefractiveVolume(SceneObject):
         medium : name, Medium or constant index.
         resolution : voxels along the longest edge of the box.
         ambient_n : index around the body.
+        progress : called with the share of the voxels that is done, 0 to 1.
         placement : any other field of the class, such as ``boundary`` or ``position``.
 
         Raises
@@ -110,7 +118,9 @@ class RefractiveVolume(SceneObject):
         options = _checked(placement)
         substance = media.resolve(medium, "refractive_volume.medium")
         vertices, faces, recipe = _triangles(mesh)
-        volume, center = Volume.from_mesh(vertices, faces, substance, resolution, ambient_n=ambient_n)
+        volume, center = Volume.from_mesh(
+            vertices, faces, substance, resolution, ambient_n=ambient_n, progress=progress
+        )
         if recipe is not None and "center_m" not in options:
             made = {**recipe, "medium": substance, "resolution": resolution, "ambient_n": volume.ambient_n}
             options["origin"] = Origin(made)

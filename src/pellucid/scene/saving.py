@@ -146,7 +146,8 @@ def _mesh(mesh: Mesh, label: str, beside: Sidecars) -> dict[str, Any]:
         source: dict[str, Any] = {"arrays": beside.arrays(label, arrays)}
     else:
         source = _plain(mesh.origin.recipe)
-        source |= {name: beside.relative(source[name]) for name in ("file", "arrays") if name in source}
+        if "file" in source:
+            source["file"] = beside.relative(source["file"])
     source["base_color"] = list(mesh.base_color)  # a file or a checkerboard brings along another default
     own = mesh.origin.base_color_map if mesh.origin else None
     if mesh.base_color_map is not own:

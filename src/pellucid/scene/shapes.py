@@ -45,10 +45,9 @@ def sphere(radius: float, segments: int) -> Triangles:
     """Circles of latitude and longitude, `segments` round the equator; u runs eastward, v to the north (+Y)."""
     rings = max(segments // 2, 2)
     v, u = np.meshgrid(np.linspace(0.0, 1.0, rings + 1), np.linspace(0.0, 1.0, segments + 1), indexing="ij")
-    latitude, longitude = np.pi * (v - 0.5), 2.0 * np.pi * u
-    normals = np.stack(
-        [np.cos(latitude) * np.sin(longitude), np.sin(latitude), np.cos(latitude) * np.cos(longitude)], -1
-    ).reshape(-1, 3)
+    latitude, longitude = np.pi * (v - 0.5), 2.0 * np.pi * (u % 1.0)  # both sides of the seam at the same place
+    across = np.where((v == 0.0) | (v == 1.0), 0.0, np.cos(latitude))
+    normals = np.stack([across * np.sin(longitude), np.sin(latitude), across * np.cos(longitude)], -1).reshape(-1, 3)
     first = (np.arange(rings)[:, None] * (segments + 1) + np.arange(segments)).ravel()
     above = first + segments + 1
     southern, northern = np.stack([first, first + 1, above + 1], 1), np.stack([first, above + 1, above], 1)
@@ -73,7 +72,7 @@ def vertex_normals(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     -------
     (V, 3) float64 unit vectors; +Y where no face of any area adjoins.
     """
-    _, place = np.unique(vertices, axis=0, return_inverse=True)
+    _, place = np.unique(vertices + 0.0, axis=0, return_inverse=True)
     place = place.reshape(-1)
     corners = np.asarray(vertices, np.float64)[faces]
     normal = face_normals(vertices, faces)
