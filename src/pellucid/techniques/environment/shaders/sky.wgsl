@@ -1,12 +1,7 @@
-// The environment behind everything: one triangle over the picture, at the depth of infinity.
+// The environment behind everything.
 //!import surroundings/shaders/camera
 //!import surroundings/shaders/environment
-
-@vertex
-fn vs_main(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4f {
-    let corner = vec2f(f32(vertex & 1u), f32(vertex >> 1u));
-    return vec4f(4.0 * corner - 1.0, 0.0, 1.0);
-}
+//!import surroundings/shaders/full_picture
 
 @fragment
 fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {

@@ -1,20 +1,22 @@
-// Radiance to a picture for a screen: exposure, tone mapping, sRGB.
+// Radiance to a picture for a screen: glow, exposure, tone mapping, sRGB.
 //!import optics/colour
+//!import surroundings/shaders/full_picture
 //!struct FinishParams from techniques.finish.passes
 
 @group(0) @binding(0) var<uniform> finish_params: FinishParams;
 @group(0) @binding(1) var radiance: texture_2d<f32>;
-
-@vertex
-fn vs_main(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4f {
-    let corner = vec2f(f32(vertex & 1u), f32(vertex >> 1u));
-    return vec4f(4.0 * corner - 1.0, 0.0, 1.0);
-}
+@group(0) @binding(2) var blurred: texture_2d<f32>;
+@group(0) @binding(3) var blurred_sampler: sampler;
 
 @fragment
 fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let exposed = finish_params.exposure * textureLoad(radiance, vec2i(position.xy), 0).rgb;
-    return vec4f(srgb_encode(saturate(tone_mapped(max(exposed, vec3f(0.0))))), 1.0);
+    var light = textureLoad(radiance, vec2i(position.xy), 0).rgb;
+    if finish_params.glow > 0.0 {
+        let uv = 0.5 * position.xy / vec2f(textureDimensions(blurred));
+        light = mix(light, textureSampleLevel(blurred, blurred_sampler, uv, 0.0).rgb, finish_params.glow);
+    }
+    let exposed = max(finish_params.exposure * light, vec3f(0.0));
+    return vec4f(srgb_encode(saturate(tone_mapped(exposed))), 1.0);
 }
 
 // The order of passes.TONE_MAPPINGS

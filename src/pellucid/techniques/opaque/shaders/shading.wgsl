@@ -1,14 +1,8 @@
 // Radiance of the triangle that each pixel shows, by the same shading as a ray that hits it.
 //!import surroundings/shaders/shade
+//!import surroundings/shaders/full_picture
 
 @group(0) @binding(0) var visible_triangles: texture_2d<u32>;
-
-// One triangle over the picture at the depth of infinity, drawn where something lies nearer
-@vertex
-fn vs_main(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4f {
-    let corner = vec2f(f32(vertex & 1u), f32(vertex >> 1u));
-    return vec4f(4.0 * corner - 1.0, 0.0, 1.0);
-}
 
 @fragment
 fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
