@@ -135,7 +135,7 @@ def test_smooth_curve_passes_its_knots():
 def test_wine_wets_the_wall_and_has_a_level_top():
     glass, wine = shapes.wine_glass(0.22)
     rng = np.random.default_rng(0)
-    y = rng.uniform(-0.02, 0.02, 200000)
+    y = rng.uniform(-0.02, 0.02, 60000)
     r, turn = np.sqrt(rng.uniform(0, 0.045**2, y.size)), rng.uniform(0, 2 * np.pi, y.size)
     x, z = r * np.cos(turn), r * np.sin(turn)
     both = (glass(x, y, z) < 0) & (wine(x, y, z) < 0)

@@ -81,16 +81,33 @@ def test_tree_agrees_with_the_sum_over_all_triangles_on_an_open_mesh():
     np.testing.assert_allclose(fast, brute_winding(v[f], groups.reshape(-1, 3)), atol=1e-12)
 
 
+def test_neighbours_are_summed_like_single_groups():
+    ball = sphere(2)
+    v, f = cleaned(ball.vertices, ball.faces[:-30])
+    winding = WindingNumber(v, f)
+    groups = np.random.default_rng(0).uniform(-1.2, 1.2, size=(39, 2, 3))
+    np.testing.assert_allclose(winding.of_neighbours(groups), winding(groups), atol=1e-12)
+
+
+def test_tree_alone_is_near_the_sum_where_open_edges_are_too_many_to_correct():
+    ball = sphere(4)
+    rng = np.random.default_rng(0)
+    v, f = cleaned(ball.vertices, ball.faces[rng.uniform(size=len(ball.faces)) < 0.6])
+    groups = rng.uniform(-1.3, 1.3, size=(300, 1, 3))
+    fast = WindingNumber(v, f)(groups).ravel()
+    assert np.abs(fast - brute_winding(v[f], groups[:, 0])).max() < 0.02
+
+
 def test_sphere_is_exact_in_the_band_and_a_close_lower_bound_beyond():
     ball = sphere(4)
     origin, h, p = centres(48, 2.6)
     sdf = signed_distance(ball.vertices, ball.faces, (48,) * 3, origin, h)
-    sample = np.random.default_rng(1).integers(0, sdf.size, 2500)
+    sample = np.random.default_rng(1).integers(0, sdf.size, 1500)
     sdf, p = sdf.ravel()[sample], p.reshape(-1, 3)[sample]
     true = brute_distance(np.asarray(ball.triangles), p)
     analytic = np.linalg.norm(p, axis=-1) - 1.0
     band = true < 3 * h
-    assert band.sum() > 300
+    assert band.sum() > 200
     facet = 1.0 - np.linalg.norm(ball.triangles_center, axis=1).min()
     assert np.abs(np.abs(sdf) - true)[band].max() < 1e-6
     assert np.abs(sdf - analytic)[band].max() < facet + 1e-6
@@ -119,7 +136,7 @@ def test_open_hemisphere_is_closed_at_half_winding():
     v, f = cleaned(ball.vertices, ball.faces[ball.triangles_center[:, 1] > 0.0])
     origin, h, p = centres(40, 2.6)
     sdf = signed_distance(v, f, (40,) * 3, origin, h)
-    sample = np.random.default_rng(1).integers(0, sdf.size, 3000)
+    sample = np.random.default_rng(1).integers(0, sdf.size, 1500)
     w = brute_winding(v[f], p.reshape(-1, 3)[sample])
     assert ((sdf.ravel()[sample] < 0) == (w > 0.5)).all()
     # On the axis the level set crosses where the sum over all triangles says so.
@@ -215,7 +232,7 @@ def test_bunny_is_watertight_although_its_bottom_is_open():
     sdf = signed_distance(v, f, (n, n, n), origin, h)
     line = [origin[a] + np.arange(n) * h for a in range(3)]
     z, y, x = np.meshgrid(line[2], line[1], line[0], indexing="ij")
-    sample = np.random.default_rng(5).integers(0, n**3, 3000)
+    sample = np.random.default_rng(5).integers(0, n**3, 1500)
     points = np.stack([x, y, z], axis=-1).reshape(-1, 3)[sample]
     w = brute_winding(v[f], points)
     np.testing.assert_array_equal(sdf.ravel()[sample] < 0, w > 0.5)

@@ -13,6 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 TILE = 4
+#: Corners (x, y, z) of a cube of eight voxels, z slowest.
+_CUBE = np.array([(i, j, k) for k in (0, 1) for j in (0, 1) for i in (0, 1)], dtype=np.float64)
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
@@ -118,18 +120,20 @@ def band_distance(corners: Floats, grid: Grid, band_m: float) -> npt.NDArray[np.
     -------
     (Z, Y, X) float64, metres.
     """
-    squared = np.full((int(np.prod(grid.tiles)), TILE**3), np.inf)
+    squared = np.full((int(np.prod(grid.tiles)) * 8, 8), np.inf)
     if len(corners):
         small = split_longer_than(corners, 3 * TILE * float(grid.voxel_m.min()))
         frames = TriangleFrames(small)
         tile, triangle = _candidates(small, frames, grid, band_m)
-        offsets = grid.tile_offsets_m
-        for part in _runs(tile, 2048):
-            d2 = frames.squared_distance(triangle[part], grid.tile_first_m(tile[part]), offsets)
-            starts = np.flatnonzero(np.diff(tile[part], prepend=-1))
-            which = tile[part][starts]
+        octant, triangle = _octants(tile, triangle, frames, grid, band_m)
+        first, offsets = _octant_first_m(octant, grid), _CUBE * grid.voxel_m
+        for part in _runs(octant, 16384):
+            d2 = frames.squared_distance(triangle[part], first[part], offsets)
+            starts = np.flatnonzero(np.diff(octant[part], prepend=-1))
+            which = octant[part][starts]
             squared[which] = np.minimum(squared[which], np.minimum.reduceat(d2, starts, axis=0))
-    distance = grid.assemble(np.sqrt(squared))
+    by_axis = squared.reshape(-1, 2, 2, 2, 2, 2, 2).transpose(0, 1, 4, 2, 5, 3, 6)
+    distance = grid.assemble(np.sqrt(by_axis.reshape(-1, TILE**3)))
     distance[distance > band_m] = np.inf
     return distance
 
@@ -175,16 +179,40 @@ def _prune(tile: Ints, triangle: Ints, frames: TriangleFrames, grid: Grid, band_
     half = 0.5 * (TILE - 1) * grid.voxel_m
     radius = float(np.linalg.norm(half))
     to_centre = np.empty(len(tile))
-    for start in range(0, len(tile), 65536):
-        s = slice(start, start + 65536)
+    for s in _runs(tile, 65536):
         d2 = frames.squared_distance(triangle[s], grid.tile_first_m(tile[s]), half[None, :])
         to_centre[s] = np.sqrt(d2[:, 0])
     nearest = np.full(int(np.prod(grid.tiles)), np.inf)
     np.minimum.at(nearest, tile, to_centre)
-    limit = np.minimum(nearest[tile] + 2.0 * radius, band_m + radius) * (1.0 + 1e-9)
-    kept = np.flatnonzero(to_centre <= limit)
+    kept = np.flatnonzero(to_centre <= _limit(nearest[tile], radius, band_m))
     order = kept[np.argsort(tile[kept], kind="stable")]
     return tile[order], triangle[order]
+
+
+def _octants(tile: Ints, triangle: Ints, frames: TriangleFrames, grid: Grid, band_m: float) -> tuple[Ints, Ints]:
+    """The same pairs for the eight octants of a tile (number 8 tile + octant), pruned once more."""
+    radius = 0.5 * float(np.linalg.norm(grid.voxel_m))
+    centres = (2.0 * _CUBE + 0.5) * grid.voxel_m
+    to_centre = np.empty((len(tile), 8))
+    for s in _runs(tile, 16384):
+        to_centre[s] = np.sqrt(frames.squared_distance(triangle[s], grid.tile_first_m(tile[s]), centres))
+    nearest = np.full((int(np.prod(grid.tiles)), 8), np.inf)
+    starts = np.flatnonzero(np.diff(tile, prepend=-1))
+    if len(tile):
+        nearest[tile[starts]] = np.minimum.reduceat(to_centre, starts, axis=0)
+    pair, octant = np.nonzero(to_centre <= _limit(nearest[tile], radius, band_m))
+    number = tile[pair] * 8 + octant
+    order = np.argsort(number, kind="stable")
+    return number[order], triangle[pair[order]]
+
+
+def _limit(nearest: Floats, radius: float, band_m: float) -> Floats:
+    """How far a triangle may be from the centre of a group of voxels and yet be nearest to one of them."""
+    return np.minimum(nearest + 2.0 * radius, band_m + radius) * (1.0 + 1e-9)
+
+
+def _octant_first_m(octant: Ints, grid: Grid) -> Floats:
+    return grid.tile_first_m(octant // 8) + 2.0 * _CUBE[octant % 8] * grid.voxel_m
 
 
 def _runs(tile: Ints, length: int) -> Iterator[slice]:

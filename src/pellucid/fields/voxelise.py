@@ -165,7 +165,7 @@ def _parts_space(corners: Floats, winding: WindingNumber, step_m: float) -> npt.
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normal *= step_m / np.linalg.norm(normal, axis=1)[:, None]
     middle = np.einsum("pc,tcx->tpx", places, corners)
-    w = winding(np.concatenate([middle - normal[:, None], middle + normal[:, None]], axis=1))
+    w = winding.of_neighbours(np.concatenate([middle - normal[:, None], middle + normal[:, None]], axis=1))
     return (w[:, :4] > 0.5) != (w[:, 4:] > 0.5)
 
 

@@ -22,6 +22,8 @@ FAR_RADII = 1.7
 FAR_RADII_UNCORRECTED = 3.5
 FAN_LIMIT = 2000
 LEAF = 8
+#: Groups that share one list of clusters in `WindingNumber.of_neighbours`.
+SHARED = 4
 
 
 def solid_angle(corners: Floats, points: Floats) -> Floats:
@@ -98,6 +100,16 @@ class WindingNumber:
             w = self._hierarchical(part)
             total[start : start + 4096] = self._exact(w, part) if self._corrected else w
         return total
+
+    def of_neighbours(self, groups: Floats) -> Floats:
+        """The same for many small groups of nearby points: groups that are close together share their sums."""
+        count = -(-len(groups) // SHARED)
+        order = _along_curve(groups[:, 0])
+        padded = np.concatenate([order, np.repeat(order[-1:], count * SHARED - len(order))])
+        w = self(groups[padded].reshape(count, -1, 3)).reshape(len(padded), -1)
+        out = np.empty(groups.shape[:2])
+        out[padded] = w
+        return out
 
     def _exact(self, w: Floats, groups: Floats) -> Floats:
         if self.is_closed:
@@ -203,6 +215,17 @@ def _fan(vertices: Floats, edges: Ints) -> Floats:
     start, end = vertices[edges[:, 0]], vertices[edges[:, 1]]
     apex = np.broadcast_to(start.mean(axis=0), start.shape)
     return np.stack([end, start, apex], axis=1)
+
+
+def _along_curve(points: Floats) -> Ints:
+    """Order along the Z curve of Morton: points that follow each other are mostly near each other."""
+    low, size = points.min(axis=0), np.ptp(points, axis=0).max()
+    cell = ((points - low) / (size if size > 0.0 else 1.0) * 1023.0).astype(np.int64)
+    code = np.zeros(len(points), dtype=np.int64)
+    for bit in range(10):
+        for axis in range(3):
+            code |= ((cell[:, axis] >> bit) & 1) << (3 * bit + axis)
+    return np.argsort(code, kind="stable")
 
 
 def _sorted(pairs: list[tuple[Ints, Ints]]) -> tuple[Ints, Ints]:
