@@ -1,0 +1,188 @@
+"""The frame: the order of the passes, and nothing else."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from pellucid.errors import SceneError
+from pellucid.frame import Frame
+from pellucid.gpu import Device, PassTimer
+from pellucid.gpu.targets import Targets
+from pellucid.scene import Camera, RefractiveVolume, Scene
+from pellucid.surroundings import Surroundings
+from pellucid.techniques.eikonal.passes import EikonalTechnique
+from pellucid.techniques.environment.passes import Sky
+from pellucid.techniques.finish.accumulate import Accumulator
+from pellucid.techniques.finish.passes import Finish
+from pellucid.techniques.opaque.passes import Opaque
+
+# Which technique draws which kind of object. Adding one takes a folder and a line here.
+TECHNIQUES: dict[type, Any] = {RefractiveVolume: EikonalTechnique}
+
+
+class Renderer:
+    """Renders scenes on one device, and keeps there what the next frame can use again.
+
+    Parameters
+    ----------
+    device : where to render; the best adapter of this machine when omitted.
+
+    Raises
+    ------
+    NoAdapterError : when no device is given and there is none.
+    """
+
+    def __init__(self, device: Device | None = None) -> None:
+        self.device = device or Device.create()
+        self.surroundings = Surroundings(self.device)
+        self._opaque = Opaque(self.device)
+        self._sky = Sky(self.device)
+        self._finish = Finish(self.device)
+        self._techniques: dict[type, Any] = {}
+        self._targets: Targets | None = None
+        self._display: Any = None
+
+    def render(
+        self,
+        scene: Scene,
+        size: tuple[int, int] = (800, 600),
+        samples: int = 1,
+        time: float = 0.0,
+        progress: Callable[[float], None] | None = None,
+    ) -> Frame:
+        """Render one picture. The same input on the same device gives the same bits.
+
+        Parameters
+        ----------
+        scene : what to draw. size : (width, height) in pixels.
+        samples : jittered pictures that are averaged, for anti-aliasing.
+        time : seconds, for objects that move by themselves.
+        progress : called with the share that is done, 0 to 1.
+
+        Raises
+        ------
+        SceneError : for a size or a number of samples out of range.
+        """
+        begun = clock.perf_counter()
+        width, height = self._check(scene, size, samples)
+        self._use_size((width, height))
+        assert self._targets is not None
+        timer = PassTimer(self.device)
+        self._prepare(scene, (width, height))
+        self.device.wait()
+        timings = {"prepare": 1e3 * (clock.perf_counter() - begun)}
+        mean = self._accumulate(scene, samples, timer, timings, progress)
+        radiance, depth = mean[..., :3].copy(), self._first_depth
+        self._finish.prepare(scene.exposure, scene.tone_mapping)
+        encoder = self.device.wgpu.create_command_encoder()
+        self._finish.draw(encoder, self._targets.color, self._display.create_view(), timer)
+        self._submit(encoder, timer, timings)
+        display = self.device.read_texture(self._display)[..., :3].copy()
+        timings["total"] = 1e3 * (clock.perf_counter() - begun)
+        return Frame(radiance, _metres(depth, scene.camera), display, timings)
+
+    def _check(self, scene: Scene, size: tuple[int, int], samples: int) -> tuple[int, int]:
+        if not isinstance(scene, Scene):
+            raise SceneError("scene", f"is a {type(scene).__name__}", "give a pellucid.Scene")
+        limit = self.device.limits["max-texture-dimension-2d"]
+        try:
+            width, height = (int(s) for s in size)
+        except (TypeError, ValueError):
+            raise SceneError("size", f"is {size!r}", "give (width, height) in pixels") from None
+        if not (1 <= width <= limit and 1 <= height <= limit):
+            raise SceneError("size", f"is {width} x {height}", f"use 1 to {limit} pixels a side on this device")
+        if isinstance(samples, bool) or not isinstance(samples, int | np.integer) or not 1 <= samples <= 65536:
+            raise SceneError("samples", f"is {samples!r}", "use a whole number from 1 to 65536")
+        return width, height
+
+    def _use_size(self, size: tuple[int, int]) -> None:
+        if self._targets is None or self._targets.size != size:
+            self._targets = Targets(self.device, size)
+            usage = ("render", "copy", "sample")
+            self._display = self.device.texture(size=size, format="rgba8unorm", usage=usage, label="display")
+
+    def _prepare(self, scene: Scene, size: tuple[int, int]) -> None:
+        self.surroundings.prepare(scene, size)
+        for kind in TECHNIQUES:
+            items = [o for o in scene.objects if type(o) is kind]
+            if items and kind not in self._techniques:
+                self._techniques[kind] = TECHNIQUES[kind](self.device)
+            if kind in self._techniques:
+                self._techniques[kind].prepare(items, self.surroundings)
+
+    def _accumulate(
+        self,
+        scene: Scene,
+        samples: int,
+        timer: PassTimer,
+        timings: dict[str, float],
+        progress: Callable[[float], None] | None,
+    ) -> np.ndarray:
+        targets = self._targets
+        assert targets is not None
+        total = Accumulator(self.device, targets.size) if samples > 1 else None
+        for index in range(samples):
+            offset = _jitter(index) if samples > 1 else (0.0, 0.0)
+            self.surroundings.set_camera(scene.camera, targets.size, offset, index)
+            encoder = self.device.wgpu.create_command_encoder()
+            self._draw(encoder, scene, targets, timer)
+            if total is not None:
+                total.add(encoder, targets.color, timer)
+            self._submit(encoder, timer, timings)
+            if index == 0:
+                self._first_depth = targets.read_depth()
+            if progress is not None:
+                progress((index + 1) / samples)
+        if total is None:
+            return self.device.read_texture(targets.color)
+        mean = total.mean()
+        self.device.write_texture(targets.color, mean)
+        return mean
+
+    def _draw(self, encoder: Any, scene: Scene, targets: Targets, timer: PassTimer) -> None:
+        """Illuminate, opaque, refractive (far to near): everything up to the linear picture."""
+        around = self.surroundings
+        self._opaque.illuminate(encoder, around, timer)
+        self._opaque.draw(encoder, targets.color_view, targets.depth_view, around, timer)
+        self._sky.draw(encoder, targets.color_view, targets.depth_view, around, timer)
+        refractive = [o for o in scene.objects if type(o) in TECHNIQUES]
+        for item in sorted(refractive, key=lambda o: -_distance(o, scene.camera)):
+            self._techniques[type(item)].draw(encoder, item, targets, scene.camera, around, timer)
+
+    def _submit(self, encoder: Any, timer: PassTimer, timings: dict[str, float]) -> None:
+        self.device.wgpu.queue.submit([encoder.finish()])
+        for label, ms in timer.milliseconds().items():
+            timings[label] = timings.get(label, 0.0) + ms
+
+
+def _distance(item: Any, camera: Camera) -> float:
+    return float(np.linalg.norm(item.object_to_world()[:3, 3] - np.asarray(camera.position)))
+
+
+def _jitter(index: int) -> tuple[float, float]:
+    """Point `index` of the Halton sequence in bases 2 and 3, about the pixel's centre."""
+    return _radical_inverse(index + 1, 2) - 0.5, _radical_inverse(index + 1, 3) - 0.5
+
+
+def _radical_inverse(number: int, base: int) -> float:
+    out, digit = 0.0, 1.0 / base
+    while number:
+        number, remainder = divmod(number, base)
+        out += remainder * digit
+        digit /= base
+    return out
+
+
+def _metres(depth: np.ndarray, camera: Camera) -> np.ndarray:
+    """Depth-buffer values to metres along the view axis: near/z for perspective, linear for orthographic."""
+    near, far = camera.near_m, camera.far_m
+    with np.errstate(divide="ignore"):
+        if camera.orthographic_height_m is not None:
+            metres = far - depth * (far - near)
+        else:
+            metres = near / depth
+    return np.where(depth > 0.0, metres, np.inf).astype(np.float32)

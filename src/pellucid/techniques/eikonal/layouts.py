@@ -1,0 +1,60 @@
+"""Memory layouts that the eikonal shaders and this package share."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pellucid.gpu.layout import struct
+
+MAX_REGIONS = 4
+
+VolumeParams = struct(
+    [
+        ("world_from_object", "mat4x4f"),
+        ("object_from_world", "mat4x4f"),
+        ("half_extent", "vec3f"),  # of the sampled fields, object metres
+        ("ambient_n", "f32"),
+        ("proxy_half", "vec3f"),  # of the box where rays begin, object metres
+        ("scale", "f32"),  # world metres per object metre
+        ("voxel", "f32"),  # shortest voxel edge, object metres
+        ("step", "f32"),  # longest step in inhomogeneous matter, object metres
+        ("force_scale", "f32"),  # stored force times this is grad(n^2)/2 per object metre
+        ("index_scale", "f32"),  # stored index times this is n - ambient_n
+        ("boundary_on", "f32"),  # |grad n| that begins a boundary event, 1/m
+        ("boundary_off", "f32"),  # |grad n| that ends it
+        ("min_weight", "f32"),  # lighter branches end in the environment
+        ("pause", "f32"),  # path length after which the march hands back, object metres
+        ("max_steps", "u32"),
+        ("bounces", "u32"),
+        ("region_count", "u32"),  # 0: the box itself is the surface
+        ("fields", "u32"),  # bits: 1 absorption, 2 emission, 4 opaque, 8 opaque meshes reach into the box
+        ("region_n", "vec4f"),
+        ("region_absorption", ("vec4f", MAX_REGIONS)),  # 1/m of the world
+        ("region_emission", ("vec4f", MAX_REGIONS)),  # radiance per world metre
+    ]
+)
+
+HAS_ABSORPTION, HAS_EMISSION, HAS_OPAQUE, MEETS_MESHES = 1, 2, 4, 8
+
+TraceParams = struct([("count", "u32")])
+
+# One ray of `pl.trace`, object space. Results overwrite it.
+TraceRay = struct(
+    [
+        ("position", "vec3f"),
+        ("optical_path", "f32"),
+        ("momentum", "vec3f"),  # in: unit direction; out: deviation of the optical momentum from the start
+        ("status", "u32"),
+        ("transmittance", "vec3f"),
+        ("steps", "u32"),
+        ("base", "vec3f"),  # out: optical momentum that `momentum` deviates from
+        ("n", "f32"),
+    ]
+)
+
+MISSED, LEFT, OPAQUE, EXHAUSTED, INTERFACE, PAUSED = range(6)
+
+
+def blank_params() -> np.ndarray:
+    """A zeroed VolumeParams record."""
+    return np.zeros((), VolumeParams)

@@ -1,0 +1,136 @@
+"""A prepared volume on the GPU: textures that stay, and one small uniform a wavelength channel that changes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from pellucid.gpu import Device
+from pellucid.scene.quality import Quality
+from pellucid.techniques.eikonal.layouts import (
+    HAS_ABSORPTION,
+    HAS_EMISSION,
+    HAS_OPAQUE,
+    MEETS_MESHES,
+    VolumeParams,
+    blank_params,
+)
+from pellucid.techniques.eikonal.prepare import Prepared
+
+# The box of a volume whose box is its surface is entered from this far outside, voxels.
+BOX_MARGIN_VOXELS = 1.5
+# Between two looks at the opaque meshes that reach into a volume with curved rays, voxels.
+PAUSE_VOXELS = 4.0
+FAR = 1e30
+
+
+@dataclass(frozen=True)
+class VolumeTextures:
+    """Textures of one volume: bindings for each channel, and what their values are scaled by."""
+
+    channels: tuple[dict[str, Any], ...]
+    force_scales: tuple[float, ...]
+    index_scales: tuple[float, ...]
+    fields: int
+    nbytes: int
+
+
+def upload(device: Device, prepared: Prepared) -> VolumeTextures:
+    """Create the textures of a prepared volume, 32-bit where the device can filter that, else 16-bit."""
+    shared = {"volume_sampler": device.sampler("linear", "clamp")}
+    size = 0
+
+    def texture(array: np.ndarray | None, channels: int, half: bool, label: str) -> Any:
+        nonlocal size
+        if array is None:
+            array = np.zeros((1, 1, 1, channels), np.float32)
+        narrow = half or not device.float32_filterable
+        name = {1: "r", 2: "rg", 4: "rgba"}[channels] + ("16float" if narrow else "32float")
+        data = _fit(array, channels).astype(np.float16 if narrow else np.float32)
+        size += data.nbytes
+        return device.texture(data, format=name, dimension="3d", label=label)
+
+    count = prepared.distance.shape[-1] if prepared.distance is not None else 1
+    shared["distance_field"] = texture(prepared.distance, 1 if count == 1 else 4, False, "distance")
+    shared["absorption_field"] = texture(prepared.absorption, 4, True, "absorption")
+    shared["emission_field"] = texture(prepared.emission, 4, True, "emission")
+    shared["opaque_field"] = texture(prepared.opaque, 4, True, "opaque")
+    made: dict[tuple[int, int], tuple[dict[str, Any], float, float]] = {}
+    rows = []
+    for channel in prepared.channels:
+        key = (id(channel.force), id(channel.index))
+        if key not in made:
+            force, force_scale = _scaled(channel.force, 3)
+            index, index_scale = _scaled(channel.index, 1)
+            own = {
+                "force_field": texture(force, 4, False, "force"),
+                "index_field": texture(index, 1, False, "index"),
+            }
+            made[key] = ({**shared, **own}, force_scale, index_scale)
+        rows.append(made[key])
+    bits = (HAS_ABSORPTION, prepared.absorption), (HAS_EMISSION, prepared.emission), (HAS_OPAQUE, prepared.opaque)
+    fields = sum(bit for bit, field in bits if field is not None)
+    bindings, force_scales, index_scales = zip(*rows, strict=True)
+    return VolumeTextures(bindings, force_scales, index_scales, fields, size)
+
+
+def _scaled(field: np.ndarray | None, channels: int) -> tuple[np.ndarray | None, float]:
+    """Bring the leading channels into -1..1, so that 16-bit textures keep the digits of weak fields."""
+    if field is None:
+        return None, 1.0
+    data = field if field.ndim == 4 else field[..., None]
+    scale = float(np.abs(data[..., :channels]).max()) or 1.0
+    scale = float(np.exp2(np.ceil(np.log2(scale))))  # a power of two costs no digits
+    out = data.astype(np.float32, copy=True)
+    out[..., :channels] /= scale
+    return out, scale
+
+
+def _fit(array: np.ndarray, channels: int) -> np.ndarray:
+    data = array if array.ndim == 4 else array[..., None]
+    if data.shape[-1] < channels:
+        data = np.concatenate([data, np.zeros((*data.shape[:3], channels - data.shape[-1]), data.dtype)], axis=-1)
+    return data
+
+
+def parameters(
+    prepared: Prepared,
+    textures: VolumeTextures,
+    channel: int,
+    quality: Quality,
+    world_from_object: np.ndarray,
+    scale: float,
+    meets_meshes: bool = False,
+) -> np.ndarray:
+    """The VolumeParams record of one channel. world_from_object : (4, 4); scale : world metres per object metre."""
+    out = blank_params()
+    half = 0.5 * np.array(prepared.extent_m)
+    by_box = prepared.sharp and prepared.distance is None
+    curved = not prepared.sharp or prepared.graded
+    row = prepared.channels[channel]
+    out["world_from_object"] = np.asarray(world_from_object, np.float64).T
+    out["object_from_world"] = np.linalg.inv(np.asarray(world_from_object, np.float64)).T
+    out["half_extent"] = half
+    out["ambient_n"] = prepared.ambient_n
+    out["proxy_half"] = half + (BOX_MARGIN_VOXELS * prepared.voxel if by_box else 0.0)
+    out["scale"] = scale
+    out["voxel"] = prepared.voxel
+    out["step"] = quality.step_voxels * prepared.voxel
+    out["force_scale"] = textures.force_scales[channel]
+    out["index_scale"] = textures.index_scales[channel]
+    out["boundary_on"] = min(prepared.boundary_on_per_m, FAR)
+    out["boundary_off"] = prepared.boundary_off_per_m
+    out["min_weight"] = quality.min_weight
+    out["pause"] = PAUSE_VOXELS * prepared.voxel if meets_meshes and curved else FAR
+    out["max_steps"] = quality.max_steps
+    out["bounces"] = quality.bounces
+    out["region_count"] = len(row.region_n)
+    out["fields"] = textures.fields | (MEETS_MESHES if meets_meshes else 0)
+    for k, n in enumerate(row.region_n):
+        out["region_n"][k] = n
+        out["region_absorption"][k, :3] = prepared.region_absorption[k]
+        out["region_emission"][k, :3] = prepared.region_emission[k]
+    assert out.dtype.itemsize == VolumeParams.itemsize
+    return out

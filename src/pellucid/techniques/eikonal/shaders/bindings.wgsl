@@ -1,0 +1,21 @@
+// What a volume is to a shader: its parameters and its fields, all in object space (metres, box centred on 0).
+
+//!struct VolumeParams from techniques.eikonal.layouts
+
+const HAS_ABSORPTION = 1u;
+const HAS_EMISSION = 2u;
+const HAS_OPAQUE = 4u;
+const MEETS_MESHES = 8u;
+
+@group(0) @binding(0) var<uniform> volume: VolumeParams;
+@group(0) @binding(1) var volume_sampler: sampler;
+// xyz: grad(n^2)/2 (leapfrog) or grad n (Euler), scaled; w: radius around here, in voxels, in which every field is constant
+@group(0) @binding(2) var force_field: texture_3d<f32>;
+// signed distance to the surface of each region, in voxels
+@group(0) @binding(3) var distance_field: texture_3d<f32>;
+// n - ambient_n, scaled
+@group(0) @binding(4) var index_field: texture_3d<f32>;
+@group(0) @binding(5) var absorption_field: texture_3d<f32>;
+@group(0) @binding(6) var emission_field: texture_3d<f32>;
+// linear rgb, coverage
+@group(0) @binding(7) var opaque_field: texture_3d<f32>;

@@ -1,0 +1,69 @@
+// One step of a ray through the continuous field: the equations of motion, and how long a step may be.
+
+//!import optics/eikonal
+//!import techniques/eikonal/shaders/walk
+//!import techniques/eikonal/shaders/fields
+//!import techniques/eikonal/shaders/gather
+
+override EULER: bool = false;      // first-order steps in arc length [tevs2007, eq. 5.11-5.12], for comparison
+override ADAPTIVE: bool = true;    // jump where nothing changes, shorten where the ray bends
+
+// Largest change of direction in one step, radians.
+const BEND_PER_STEP = 0.25;
+const NO_LIMIT = 1e30;
+
+struct Step {
+    length: f32,
+    opaque_at_probe: bool,
+}
+
+fn step_length(walk: ptr<function, Walk>) -> f32 {
+    if (!ADAPTIVE) { return volume.step; }
+    return min(volume.step, BEND_PER_STEP / max((*walk).bend, 1e-12));
+}
+
+// Move by at most `limit` along the ray: a jump through homogeneous matter, or a step of the integrator.
+fn take_step(walk: ptr<function, Walk>, limit: f32) -> Step {
+    let p = (*walk).p0 + (*walk).q;
+    let n = length(p);
+    let d = p / n;
+    let stride = step_length(walk);
+    let jumps = ADAPTIVE && (*walk).radius > stride;
+    let reach = min(select(stride, (*walk).radius, jumps), limit);
+    let ahead = select(select(0.5, 0.0, EULER), 1.0, jumps) * reach;
+    let probe = (*walk).x + ahead * d;
+    let here = force_at(probe);
+    let after = select(reach - ahead, 0.0, jumps);
+    let kept_n = select(n, index_for_euler(n, probe), EULER);
+    if (EULER) {
+        (*walk).x = euler_position((*walk).x, p, kept_n, reach);
+        (*walk).q += here.force * reach;
+    } else {
+        // Half drift, kick, half drift; in a jump the second half has no length and no force acts.
+        let force = select(here.force, vec3f(0.0), jumps);
+        (*walk).q += force * (reach / n);
+        (*walk).x = drift(probe, (*walk).p0 + (*walk).q, after / n);
+        (*walk).bend = length(force) / (n * n);
+    }
+    (*walk).radius = max(here.radius - after, 0.0);
+    (*walk).steps += 1u;
+    let sigma = select_absorption(probe);
+    let glow = select_emission(probe);
+    gather(walk, sigma, glow, kept_n, reach);
+    return Step(reach, has(HAS_OPAQUE) && opaque_at(probe).a > 0.5);
+}
+
+fn index_for_euler(n: f32, x: vec3f) -> f32 {
+    if (!EULER) { return n; }
+    return index_at(x);
+}
+
+fn select_absorption(x: vec3f) -> vec3f {
+    if (!has(HAS_ABSORPTION)) { return vec3f(0.0); }
+    return absorption_at(x);
+}
+
+fn select_emission(x: vec3f) -> vec3f {
+    if (!has(HAS_EMISSION)) { return vec3f(0.0); }
+    return emission_at(x);
+}
