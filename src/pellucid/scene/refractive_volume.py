@@ -30,8 +30,9 @@ class RefractiveVolume(SceneObject):
     Parameters
     ----------
     volume : the field itself, a ``pellucid.fields.volume.Volume``.
-    boundary : ``"sharp"`` refracts and reflects where regions meet, by Snell and Fresnel;
-        ``"smooth"`` lets the index change over about a voxel instead.
+    boundary : ``"sharp"`` refracts and reflects where regions meet, by Snell and Fresnel (without regions
+        the box itself is the surface); ``"smooth"`` lets the index change over about a voxel instead.
+        ``"auto"`` becomes sharp for a volume with regions and smooth for one of arrays.
     position, rotation, scale : metres, degrees about x, y, z in this order, one factor > 0.
     dispersion : trace red, green and blue apart where the medium asks for it.
     smoothing_voxels : width of the Gaussian that smooths a field before its gradient, 0 to 8.
@@ -50,7 +51,7 @@ class RefractiveVolume(SceneObject):
     """
 
     volume: Volume
-    boundary: str = "sharp"
+    boundary: str = "auto"
     position: checks.Vector = (0.0, 0.0, 0.0)
     rotation: checks.Vector = (0.0, 0.0, 0.0)
     scale: float = 1.0
@@ -69,6 +70,8 @@ class RefractiveVolume(SceneObject):
             kind = type(self.volume).__name__
             raise SceneError("refractive_volume.volume", f"cannot be {kind!r}", "use from_mesh, from_array, from_sdf")
         store(self, **_checked({name: getattr(self, name) for name in DEFAULTS}))
+        if self.boundary == "auto":
+            store(self, boundary="sharp" if self.volume.regions else "smooth")
 
     def replace(self, **changes: Any) -> Self:
         """A copy with some fields changed; a new volume or centre has no recipe."""
@@ -219,7 +222,7 @@ def _checked(given: Mapping[str, Any]) -> dict[str, Any]:
             f"{prefix}.{unknown[0]}", "is not a field of RefractiveVolume", f"it has {', '.join(DEFAULTS)}"
         )
     tests: dict[str, Callable[[str, Any], Any]] = {
-        "boundary": lambda f, v: checks.choice(f, v, ("sharp", "smooth")),
+        "boundary": lambda f, v: checks.choice(f, v, ("auto", "sharp", "smooth")),
         "dispersion": checks.flag,
         "smoothing_voxels": lambda f, v: checks.number(f, v, low=0.0, high=8.0, unit="voxels"),
         "gradient": lambda f, v: checks.choice(f, v, ("central", "sobel")),

@@ -1,0 +1,102 @@
+"""`pellucid media`: what things can be made of."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from pellucid.cli.console import outcome
+
+if TYPE_CHECKING:
+    from pellucid.media import Medium
+
+LINES_NM = {"h": 404.66, "g": 435.83, "F": 486.13, "e": 546.07, "d": 587.56, "C": 656.28, "A'": 768.19, "s": 852.11}
+"""Fraunhofer lines at which glass makers state indices, nm."""
+
+
+def media(
+    name: Annotated[
+        str | None, typer.Argument(metavar="[NAME]", help="One medium in detail; a number works too.")
+    ] = None,
+) -> None:
+    """List all media by name, or show one with its index at several wavelengths.
+
+    A medium in the list can be given to --medium and to every argument of that name in Python.
+    """
+    from pellucid import media as catalogue
+    from pellucid.cli.arguments import substance
+
+    if name is None:
+        _print_all([catalogue.get(each) for each in catalogue.names()])
+    else:
+        _print_one(catalogue.resolve(substance(name)))
+
+
+def _print_all(known: list[Medium]) -> None:
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    table.add_column("name", no_wrap=True, style="bold")
+    table.add_column("kind")
+    table.add_column("n_d", justify="right")
+    table.add_column("Abbe", justify="right")
+    table.add_column("known, nm", justify="right", no_wrap=True)
+    table.add_column("absorption RGB, 1/m", justify="right")
+    table.add_column("source", overflow="fold")
+    for medium in known:
+        cells = (medium.name, medium.kind, f"{medium.n_d:.5f}", _abbe(medium), _range(medium), _absorption(medium))
+        table.add_row(*cells, Text(medium.source))
+    console = outcome()
+    console.print(table)
+    console.print(f"{len(known)} media; pellucid media NAME shows one of them")
+
+
+def _print_one(medium: Medium) -> None:
+    from rich import box
+    from rich.table import Table
+
+    console = outcome()
+    console.print(medium.name, style="bold")
+    facts = {
+        "kind": medium.kind,
+        "index": f"n_d = {medium.n_d:.6f}, Abbe number {_abbe(medium)}",
+        "known": f"{_range(medium)} nm",
+        "source": medium.source,
+        "absorption": f"{_absorption(medium)} 1/m (red, green, blue); {medium.absorption_source}",
+    }
+    for title, text in facts.items():
+        console.print(f"  {title:<11} {text}")
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    table.add_column("line", no_wrap=True)
+    table.add_column("wavelength, nm", justify="right")
+    table.add_column("n", justify="right")
+    for label, wavelength in _wavelengths(medium):
+        table.add_row(label, f"{wavelength:.2f}", f"{float(medium.n(wavelength)):.6f}")
+    console.print(table)
+
+
+def _wavelengths(medium: Medium) -> list[tuple[str, float]]:
+    """Lines within the range that the source covers, then the three channels of a picture."""
+    from pellucid.media.medium import RGB_LAMBDA_NM
+
+    low, high = medium.valid_nm
+    channels = zip(("red channel", "green channel", "blue channel"), RGB_LAMBDA_NM, strict=True)
+    return [(name, nm) for name, nm in (*LINES_NM.items(), *channels) if low <= nm <= high]
+
+
+def _abbe(medium: Medium) -> str:
+    return f"{medium.abbe:.1f}" if math.isfinite(medium.abbe) else "-"
+
+
+def _range(medium: Medium) -> str:
+    low, high = medium.valid_nm
+    return f"{low:.0f} - {high:.0f}" if math.isfinite(high) else "any"
+
+
+def _absorption(medium: Medium) -> str:
+    rgb = medium.absorption_rgb_per_m
+    return " ".join(f"{value:.3g}" for value in rgb) if rgb.any() else "clear"

@@ -1,0 +1,55 @@
+"""`pellucid bench`: a table, or only JSON."""
+
+from __future__ import annotations
+
+import json
+import sys
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+
+def fake(progress, repeat=3):
+    progress(1.0)
+    rows = [
+        {"name": "slow", "ms": np.float64(20.0), "min_ms": 19, "max_ms": 21, "ratio": 1.0, "error": None, "note": ""},
+        {"name": "fast", "ms": 5.0, "min_ms": 4, "max_ms": 6, "ratio": 0.25, "error": 0.01, "note": f"{repeat} runs"},
+    ]
+    return {"device": {"device": "abacus"}, "suite": "sums", "rows": rows}
+
+
+@pytest.fixture
+def suites(monkeypatch):
+    module = ModuleType("pellucid.benchmarks")
+    module.SUITES = {"sums": fake, "fixed": lambda progress: fake(progress)}
+    monkeypatch.setitem(sys.modules, "pellucid.benchmarks", module)
+
+
+def test_a_table(pellucid, suites):
+    said = pellucid("bench", "sums")
+    assert said.code == 0, said.err
+    assert "abacus" in said.out and "fast" in said.out and "0.25" in said.out
+
+
+def test_json_alone_on_standard_output(pellucid, suites):
+    said = pellucid("bench", "sums", "--json", "--repeat", "7")
+    assert said.code == 0 and said.err == ""
+    report = json.loads(said.out)
+    assert report["rows"][0]["ms"] == 20.0 and report["rows"][1]["note"] == "7 runs"
+
+
+def test_a_suite_without_repeats(pellucid, suites):
+    said = pellucid("bench", "fixed", "--repeat", "7")
+    assert said.code == 2 and "--repeat" in said.err
+
+
+def test_an_unknown_suite(pellucid, suites):
+    said = pellucid("bench", "sum")
+    assert said.code == 1 and "did you mean sums" in said.err
+
+
+def test_an_installation_without_benchmarks(pellucid, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pellucid.benchmarks", None)
+    said = pellucid("bench")
+    assert said.code == 1 and said.err.startswith("error: ") and "benchmarks" in said.err
