@@ -78,7 +78,7 @@ def trace(
     from pellucid.techniques.eikonal.trace import trace as trace_on
 
     if isinstance(volume, Volume):
-        volume = RefractiveVolume(volume, boundary="sharp" if volume.regions else "smooth")
+        volume = RefractiveVolume(volume)
     return trace_on(default_device(), volume, origins, directions, quality, channel)
 
 

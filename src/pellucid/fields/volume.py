@@ -66,7 +66,8 @@ class Volume:
     anisotropy : (Z, Y, X) mean cosine of scattering, in (-1, 1).
     emission : (Z, Y, X, 3) radiance gained per metre, >= 0.
     opaque : (Z, Y, X, 4) linear RGB and coverage 0 to 1 of opaque matter.
-    regions : bodies; the **first** whose distance is negative owns a point.
+    regions : bodies; the **first** whose distance is negative owns a point. With `delta_n` as well, that is the index
+        inside the first body (a graded lens with a sharp surface), which then should be continued past the surface.
 
     Raises
     ------
@@ -254,11 +255,13 @@ class Volume:
         delta = np.zeros((*self.shape, channels))
         absorption, emission = np.zeros((*self.shape, 3)), np.zeros((*self.shape, 3))
         free = np.ones(self.shape)
-        for region in self.regions:
+        graded = None if self.delta_n is None else self.delta_n.reshape(*self.shape, -1).astype(np.float64)
+        for number, region in enumerate(self.regions):
             covered = np.clip(0.5 - region.sdf.astype(np.float64) / float(np.mean(self.voxel_m)), 0.0, 1.0)
             share = np.minimum(covered, free)[..., None]
             free -= share[..., 0]
-            delta += share * (_region_index(region.medium, channels) - self.ambient_n)
+            inside = _region_index(region.medium, channels) - self.ambient_n
+            delta += share * (graded if number == 0 and graded is not None else inside)
             absorption += share * np.asarray(region.medium.absorption_rgb_per_m)
             emission += share * np.asarray(region.emission)
         return Volume(
@@ -267,6 +270,7 @@ class Volume:
             delta_n=(delta if channels == 3 else delta[..., 0]).astype(np.float32),
             absorption=absorption.astype(np.float32) if absorption.any() else None,
             emission=emission.astype(np.float32) if emission.any() else None,
+            opaque=self.opaque,
         )
 
     def replace(self, **changes: Any) -> Volume:
@@ -294,8 +298,6 @@ def _common_shape(volume: Volume) -> tuple[int, int, int]:
     first = volume.regions[0].sdf if volume.regions else volume.delta_n
     if first is None:
         raise SceneError("delta_n", "is missing, and there are no regions", "give one of them")
-    if volume.regions and volume.delta_n is not None:
-        raise SceneError("delta_n", "is given together with regions", "give one of them")
     shape = np.shape(first)[:3]
     check_size("regions[0].sdf" if volume.regions else "delta_n", shape)
     for i, region in enumerate(volume.regions):

@@ -17,11 +17,11 @@ class Quality(Value):
     Parameters
     ----------
     method : ``"leapfrog"`` (second order) or ``"euler"`` (first order, for comparison).
-    step_voxels : step along the ray in voxels, above 0 up to 16.
-    adaptive : lengthen steps where the index is constant.
+    step_voxels : longest step in matter whose index varies, in voxels, above 0 up to 16.
+    adaptive : jump through matter that does not vary, and shorten steps where rays bend strongly.
     max_steps : a ray that needs more is given up, 1 to 50 000.
-    bounces : crossings of sharp boundaries that one ray follows, 0 to 64.
-    min_weight : a ray that carries less than this share of the light is dropped, from 0 to below 1.
+    bounces : crossings of sharp boundaries that one ray follows, 0 to 64; then it sees the environment.
+    min_weight : a ray that carries less than this share of the light sees the environment straight away.
 
     Raises
     ------
@@ -29,7 +29,7 @@ class Quality(Value):
     """
 
     method: str = "leapfrog"
-    step_voxels: float = 1.0
+    step_voxels: float = 0.5
     adaptive: bool = True
     max_steps: int = 4000
     bounces: int = 8

@@ -135,7 +135,10 @@ def _object(thing: Any, label: str, index: int, beside: Sidecars) -> dict[str, A
         return {"type": "mesh", **_mesh(thing, label, beside), **_stated(thing, LOOKS[Mesh])}
     if isinstance(thing, RefractiveVolume):
         source = _volume(thing, label, f"objects[{index}].medium", beside)
-        return {"type": "refractive_volume", **source, **_stated(thing, LOOKS[RefractiveVolume])}
+        look = _stated(thing, LOOKS[RefractiveVolume])
+        if thing.boundary == ("sharp" if thing.volume.regions else "smooth"):
+            look.pop("boundary", None)  # what "auto" would choose
+        return {"type": "refractive_volume", **source, **look}
     raise SceneError(f"objects[{index}]", f"a {type(thing).__name__} cannot be written to a scene file")
 
 

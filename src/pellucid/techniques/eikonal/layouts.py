@@ -23,11 +23,12 @@ VolumeParams = struct(
         ("boundary_on", "f32"),  # |grad n| that begins a boundary event, 1/m
         ("boundary_off", "f32"),  # |grad n| that ends it
         ("min_weight", "f32"),  # lighter branches end in the environment
-        ("pause", "f32"),  # path length after which the march hands back, object metres
+        ("pause", "f32"),  # change of momentum after which the march hands back, so that the caller may look along the chord
         ("max_steps", "u32"),
         ("bounces", "u32"),
         ("region_count", "u32"),  # 0: the box itself is the surface
         ("fields", "u32"),  # bits: 1 absorption, 2 emission, 4 opaque, 8 opaque meshes reach into the box
+        ("writes_depth", "u32"),  # 0 for matter without a surface, such as hot air
         ("region_n", "vec4f"),
         ("region_absorption", ("vec4f", MAX_REGIONS)),  # 1/m of the world
         ("region_emission", ("vec4f", MAX_REGIONS)),  # radiance per world metre
@@ -35,6 +36,9 @@ VolumeParams = struct(
 )
 
 HAS_ABSORPTION, HAS_EMISSION, HAS_OPAQUE, MEETS_MESHES = 1, 2, 4, 8
+
+# The rectangle of the picture that one draw covers, and the channel that it is for (3: all of them).
+DrawParams = struct([("corner", "vec2u"), ("size", "vec2u"), ("channel", "u32")])
 
 TraceParams = struct([("count", "u32")])
 

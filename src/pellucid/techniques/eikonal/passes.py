@@ -1,6 +1,6 @@
-"""The passes of the eikonal view renderer: volumes prepared once, then one full-screen draw a wavelength channel.
+"""The passes of the eikonal view renderer: volumes prepared once, then rays for the pixels that they cover.
 
-A dispersive volume is drawn three times, each time with the index of one channel and with the other channels masked.
+A dispersive volume is looked through three times, each time with the index of one channel and for that channel only.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pellucid.gpu import Device, RenderPass
+from pellucid.gpu import ComputeKernel, Device, RenderPass
 from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT, Targets
-from pellucid.techniques.eikonal.layouts import VolumeParams
+from pellucid.techniques.eikonal.layouts import DrawParams, VolumeParams
 from pellucid.techniques.eikonal.prepare import Prepared, prepare
 from pellucid.techniques.eikonal.resources import VolumeTextures, parameters, upload
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from pellucid.scene import Camera, RefractiveVolume
     from pellucid.surroundings import Surroundings
 
-ALL_CHANNELS = 7
+EVERY_CHANNEL = 3
 
 
 @dataclass
@@ -32,6 +32,7 @@ class _Resident:
     prepared: Prepared
     textures: VolumeTextures
     uniforms: list[Any]
+    draws: list[Any]  # one for each channel, the last for all at once
 
 
 class EikonalTechnique:
@@ -41,10 +42,14 @@ class EikonalTechnique:
         self.device = device
         self._residents: dict[Any, _Resident] = {}
         self._drawn: dict[int, tuple[_Resident, Any]] = {}
-        self._pipelines: dict[Any, RenderPass] = {}
-        self._blank = (
-            device.texture(size=(1, 1), format=COLOR_FORMAT, usage=("sample", "copy")),
-            device.texture(size=(1, 1), format=DEPTH_FORMAT, usage=("sample", "render")),
+        self._kernels: dict[Any, ComputeKernel] = {}
+        self._scratch: Any = None
+        self._composite = RenderPass(
+            device,
+            "techniques/eikonal/shaders/composite",
+            targets=[COLOR_FORMAT],
+            depth=DEPTH_FORMAT,
+            depth_compare="always",
         )
 
     @property
@@ -71,7 +76,8 @@ class EikonalTechnique:
         )
         textures = upload(self.device, prepared)
         uniforms = [self.device.buffer(VolumeParams.itemsize, "uniform", "volume") for _ in prepared.channels]
-        return _Resident(item.volume, prepared, textures, uniforms)
+        draws = [self.device.buffer(DrawParams.itemsize, "uniform", "draw") for _ in range(EVERY_CHANNEL + 1)]
+        return _Resident(item.volume, prepared, textures, uniforms, draws)
 
     def _write_parameters(self, item: RefractiveVolume, resident: _Resident, surroundings: Surroundings) -> None:
         world = item.object_to_world()
@@ -99,31 +105,51 @@ class EikonalTechnique:
         scissor = _screen_rectangle(resident.prepared, item, camera, targets.size)
         if scissor is None:
             return
-        screen = item.surroundings == "screen"
-        color, depth = targets.copies(encoder) if screen else self._blank
+        x, y, width, height = scissor
+        rows = self._pixels(width * height)
         count = len(resident.uniforms)
-        # The middle wavelength goes last and is the one that writes depth.
-        for channel in (0, 2, 1) if count == 3 else (0,):
-            mask = 1 << channel if count == 3 else ALL_CHANNELS
-            last = count == 1 or channel == 1
-            has_surface = resident.prepared.sharp or np.isfinite(resident.prepared.boundary_on_per_m)
-            self._pipeline(item, resident.prepared, mask, last and has_surface).run(
-                encoder,
-                color=[targets.color_view],
-                depth=targets.depth_view,
-                bindings={
+        kernel = self._kernel(item, resident.prepared)
+        # Red goes first and starts each pixel anew; without dispersion one draw serves every channel.
+        for channel in (0, 1, 2) if count == 3 else (EVERY_CHANNEL,):
+            own = channel % EVERY_CHANNEL
+            self._write_draw(resident.draws[channel], channel, scissor)
+            kernel.run(
+                (-(-width // 8), -(-height // 8), 1),
+                {
                     **surroundings.bindings,
-                    **resident.textures.channels[channel],
-                    "volume": resident.uniforms[channel],
-                    "screen_color": color,
-                    "screen_depth": depth,
+                    **resident.textures.channels[own],
+                    "volume": resident.uniforms[own],
+                    "screen_color": targets.color,
+                    "screen_depth": targets.depth,
+                    "draw": resident.draws[channel],
+                    "drawn": rows,
                 },
-                scissor=scissor,
-                timer=timer,
-                label="eikonal",
+                encoder,
+                timer,
+                "eikonal",
             )
+        self._composite.run(
+            encoder,
+            color=[targets.color_view],
+            depth=targets.depth_view,
+            bindings={"draw": resident.draws[channel], "drawn": rows},
+            scissor=(x, y, width, height),
+            timer=timer,
+            label="eikonal composite",
+        )
 
-    def _pipeline(self, item: RefractiveVolume, prepared: Prepared, mask: int, depth_write: bool) -> RenderPass:
+    def _pixels(self, count: int) -> Any:
+        """Storage for what `count` pixels see; it only grows."""
+        if self._scratch is None or self._scratch.size < 16 * count:
+            self._scratch = self.device.buffer(16 * count, "storage", "eikonal pixels")
+        return self._scratch
+
+    def _write_draw(self, buffer: Any, channel: int, scissor: tuple[int, int, int, int]) -> None:
+        record = np.zeros((), DrawParams)
+        record["corner"], record["size"], record["channel"] = scissor[:2], scissor[2:], channel
+        self.device.write(buffer, record.reshape(1))
+
+    def _kernel(self, item: RefractiveVolume, prepared: Prepared) -> ComputeKernel:
         constants = {
             "EULER": float(item.quality.method == "euler"),
             "ADAPTIVE": float(item.quality.adaptive),
@@ -131,26 +157,18 @@ class EikonalTechnique:
         }
         if prepared.sharp:
             constants["GRADED"] = float(prepared.graded)
-        key = (prepared.sharp, mask, depth_write, *constants.items())
-        if key not in self._pipelines:
-            name = "view_sharp" if prepared.sharp else "view_smooth"
-            self._pipelines[key] = RenderPass(
-                self.device,
-                f"techniques/eikonal/shaders/{name}",
-                targets=[COLOR_FORMAT],
-                depth=DEPTH_FORMAT,
-                depth_write=depth_write,
-                write_mask=mask,
-                constants=constants,
-                nearest=("screen_color",),
-            )
-        return self._pipelines[key]
+        key = (prepared.sharp, *constants.items())
+        if key not in self._kernels:
+            name = f"techniques/eikonal/shaders/{'view_sharp' if prepared.sharp else 'view_smooth'}"
+            self._kernels[key] = ComputeKernel(self.device, name, constants=constants, nearest=("screen_color",))
+        return self._kernels[key]
 
 
 def _key(item: RefractiveVolume, number: int) -> Any:
     return (
-        number, id(item.volume), item.boundary, item.smoothing_voxels, item.gradient, item.quality.method, item.dispersion
-    )  # fmt: skip
+        *(number, id(item.volume), item.boundary, item.smoothing_voxels, item.gradient),
+        *(item.quality.method, item.dispersion),
+    )
 
 
 def _corners(prepared: Prepared) -> np.ndarray:

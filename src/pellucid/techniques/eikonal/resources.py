@@ -21,8 +21,9 @@ from pellucid.techniques.eikonal.prepare import Prepared
 
 # The box of a volume whose box is its surface is entered from this far outside, voxels.
 BOX_MARGIN_VOXELS = 1.5
-# Between two looks at the opaque meshes that reach into a volume with curved rays, voxels.
-PAUSE_VOXELS = 4.0
+# Between two looks at the opaque meshes that reach into a volume a curved ray turns by this much, as a change of its optical
+# momentum; the chord then departs from the arc by about 1 % of its length.
+PAUSE_TURN = 0.1
 FAR = 1e30
 
 
@@ -123,9 +124,10 @@ def parameters(
     out["boundary_on"] = min(prepared.boundary_on_per_m, FAR)
     out["boundary_off"] = prepared.boundary_off_per_m
     out["min_weight"] = quality.min_weight
-    out["pause"] = PAUSE_VOXELS * prepared.voxel if meets_meshes and curved else FAR
+    out["pause"] = PAUSE_TURN if meets_meshes and curved else FAR
     out["max_steps"] = quality.max_steps
     out["bounces"] = quality.bounces
+    out["writes_depth"] = prepared.sharp or np.isfinite(prepared.boundary_on_per_m)
     out["region_count"] = len(row.region_n)
     out["fields"] = textures.fields | (MEETS_MESHES if meets_meshes else 0)
     for k, n in enumerate(row.region_n):

@@ -29,9 +29,9 @@ fn enter_sharp(walk: ptr<function, Walk>) {
     redirect(walk, normalize((*walk).p0), n);
 }
 
-// Go on until the ray leaves the box, stands at an interface, meets something opaque, or has gone `pause` metres.
+// Go on until the ray leaves the box, stands at an interface, meets something opaque, or has turned by `pause`.
 fn march_sharp(walk: ptr<function, Walk>, crossing: ptr<function, Crossing>) -> u32 {
-    var travelled = 0.0;
+    let p_begin = (*walk).p0 + (*walk).q;
     var stride = FIRST_STRIDE * volume.voxel;
     while ((*walk).steps < volume.max_steps) {
         let room = intersect_box((*walk).x, normalize((*walk).p0 + (*walk).q), volume.proxy_half).y;
@@ -48,8 +48,7 @@ fn march_sharp(walk: ptr<function, Walk>, crossing: ptr<function, Crossing>) -> 
             if (reach_surface(walk, before, step.length, signs, crossing)) { return INTERFACE; }
             stride = FIRST_STRIDE * volume.voxel;
         }
-        travelled += step.length;
-        if (travelled > volume.pause) { return PAUSED; }
+        if (distance((*walk).p0 + (*walk).q, p_begin) > volume.pause) { return PAUSED; }
     }
     return EXHAUSTED;
 }

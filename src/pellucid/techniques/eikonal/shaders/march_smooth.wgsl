@@ -11,11 +11,11 @@ struct Passage {
     steepest: f32,
 }
 
-// Go on until the ray leaves, meets something opaque, has passed a boundary, or has gone `pause` metres.
+// Go on until the ray leaves, meets something opaque, has passed a boundary, or has turned by `pause`.
 // The indices and the normal of a passed boundary follow from the momenta on its two sides: a plane boundary
 // changes p along its normal only, and |p| is the index.
 fn march_smooth(walk: ptr<function, Walk>, passage: ptr<function, Passage>, crossing: ptr<function, Crossing>) -> u32 {
-    var travelled = 0.0;
+    let p_begin = (*walk).p0 + (*walk).q;
     while ((*walk).steps < volume.max_steps) {
         let p = (*walk).p0 + (*walk).q;
         let room = intersect_box((*walk).x, normalize(p), volume.proxy_half).y;
@@ -23,8 +23,7 @@ fn march_smooth(walk: ptr<function, Walk>, passage: ptr<function, Passage>, cros
         let step = take_step(walk, room);
         if (step.opaque_at_probe) { return OPAQUE; }
         if (note_passage(walk, passage, p, crossing)) { return INTERFACE; }
-        travelled += step.length;
-        if (travelled > volume.pause) { return PAUSED; }
+        if (distance((*walk).p0 + (*walk).q, p_begin) > volume.pause) { return PAUSED; }
     }
     return EXHAUSTED;
 }

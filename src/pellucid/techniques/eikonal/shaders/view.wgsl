@@ -9,6 +9,8 @@
 //!import techniques/eikonal/shaders/bindings
 //!import techniques/eikonal/shaders/fields
 
+//!struct DrawParams from techniques.eikonal.layouts
+
 override SCREEN_SPACE: bool = false;   // see nearby geometry in the picture drawn so far instead of by rays
 
 struct Seen {
@@ -24,9 +26,18 @@ struct ViewRay {
     meets: bool,
 }
 
-@vertex
-fn vs_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+const EVERY_CHANNEL = 3u;
+const UNSEEN = -1.0;
+
+@group(0) @binding(8) var<uniform> draw: DrawParams;
+// rgb: radiance; w: value for the depth buffer, or UNSEEN where the picture stays as it is
+@group(0) @binding(9) var<storage, read_write> drawn: array<vec4f>;
+
+// A pixel for each invocation of an 8 x 8 workgroup; eight neighbours in a row of lanes form a block of 4 x 2.
+fn pixel_of(group: vec2u, lane: u32) -> vec2u {
+    let x = (lane & 3u) | (((lane >> 3u) & 1u) << 2u);
+    let y = ((lane >> 2u) & 1u) | ((lane >> 4u) << 1u);
+    return group * 8u + vec2u(x, y);
 }
 
 fn to_object(ray: CameraRay) -> ViewRay {
@@ -74,11 +85,19 @@ fn opaque_radiance(x: vec3f, d: vec3f) -> vec3f {
     return opaque_at(x).rgb * surface_irradiance(to_world(x), direction_to_world(normal)) / 3.14159265;
 }
 
-struct Drawn {
-    @location(0) color: vec4f,
-    @builtin(frag_depth) depth: f32,
-}
-
-fn drawn(ray: CameraRay, seen: Seen) -> Drawn {
-    return Drawn(vec4f(seen.radiance, 1.0), depth_of(ray.origin + seen.distance * ray.direction));
+// Keep what a pixel sees: one channel of it, or all; nothing where something nearer is drawn already.
+fn keep(pixel: vec2u, ray: CameraRay, seen: Seen) {
+    let at = draw.corner + pixel;
+    let index = pixel.y * draw.size.x + pixel.x;
+    let before = textureLoad(screen_depth, at, 0);
+    let own = depth_of(ray.origin + seen.distance * ray.direction);
+    let visible = seen.touched && own >= before;
+    let radiance = select(textureLoad(screen_color, at, 0).rgb, seen.radiance, visible);
+    let depth = select(UNSEEN, select(before, own, volume.writes_depth != 0u), visible);
+    switch draw.channel {
+        case 0u: { drawn[index] = vec4f(radiance.x, 0.0, 0.0, depth); }
+        case 1u: { drawn[index].y = radiance.y; drawn[index].w = max(drawn[index].w, depth); }
+        case 2u: { drawn[index].z = radiance.z; drawn[index].w = max(drawn[index].w, depth); }
+        default: { drawn[index] = vec4f(radiance, depth); }
+    }
 }

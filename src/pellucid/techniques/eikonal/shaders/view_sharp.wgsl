@@ -14,14 +14,15 @@ struct Branch {
     generation: u32,
 }
 
-@fragment
-fn fs_main(@builtin(position) pixel: vec4f) -> Drawn {
-    let ray = camera_ray(pixel.xy);
+@compute @workgroup_size(64)
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+    let pixel = pixel_of(group.xy, lane);
+    if (any(pixel >= draw.size)) { return; }
+    let ray = camera_ray(vec2f(draw.corner + pixel) + 0.5);
     let entry = to_object(ray);
-    if (!entry.meets) { discard; }
-    let seen = look_into(entry);
-    if (!seen.touched) { discard; }
-    return drawn(ray, seen);
+    var seen = Seen(vec3f(0.0), 0.0, false);
+    if (entry.meets) { seen = look_into(entry); }
+    keep(pixel, ray, seen);
 }
 
 fn look_into(entry: ViewRay) -> Seen {
