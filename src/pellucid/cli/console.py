@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
@@ -72,6 +73,11 @@ class Bar:
         """Set name and share without starting the clock anew."""
         self._progress.update(self._task, description=name, completed=share)
 
+    def say(self, line: str) -> None:
+        """A line of the outcome; on a terminal it goes through the bar, which would otherwise be written over."""
+        shared = self._progress.console.is_terminal and sys.stdout.isatty()
+        (self._progress.console if shared else outcome()).print(line, soft_wrap=True)
+
 
 @contextmanager
 def progress_bar() -> Iterator[Bar]:
@@ -80,7 +86,14 @@ def progress_bar() -> Iterator[Bar]:
 
     console = aside()
     columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
+    progress = Progress(
+        *columns,
+        console=console,
+        transient=True,
+        disable=not console.is_terminal,
+        redirect_stdout=False,  # results that go to a file must not end above the bar
+    )
+    with progress:
         yield Bar(progress)
 
 

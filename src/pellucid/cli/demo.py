@@ -96,14 +96,13 @@ def _make_folder(folder: Path) -> None:
 
 
 def _draw_all(chosen: list[tuple[int, Any]], folder: Path, size: Size, samples: int | None, done: list[Drawn]) -> None:
-    console = outcome()
     with progress_bar() as bar:
         for number, picture in chosen:
             path = folder / f"{number:02d}_{picture.name}.png"
             drawn = _draw(picture, path, size, samples or picture.samples, bar, len(done), len(chosen))
             done.append(drawn)
             times = f"prepared in {seconds(drawn.prepare_s):>7}, drawn in {seconds(drawn.render_s):>7}"
-            console.print(f"{path}  {times}  {picture.title}", soft_wrap=True)
+            bar.say(f"{path}  {times}  {picture.title}")
 
 
 def _draw(picture: Any, path: Path, size: Size, samples: int, bar: Bar, before: int, count: int) -> Drawn:
