@@ -31,21 +31,90 @@ fn enter_sharp(walk: ptr<function, Walk>) {
 
 // Go on until the ray leaves the box, stands at an interface, meets something opaque, or has turned by `pause`.
 fn march_sharp(walk: ptr<function, Walk>, crossing: ptr<function, Crossing>) -> u32 {
+    if (is_graded((*walk).region)) { return march_graded(walk, crossing); }
+    return march_straight(walk, crossing);
+}
+
+// Sphere tracing along a straight line. Only the distance along it is carried from step to step; matter acts once, at the end.
+fn march_straight(walk: ptr<function, Walk>, crossing: ptr<function, Crossing>) -> u32 {
+    let start = (*walk).x;
+    let d = normalize((*walk).p0);
+    let room = intersect_box(start, d, volume.proxy_half).y;
+    var signs = (*walk).signs;
+    var steps = (*walk).steps;
+    var event = LEFT;
+    var t = 0.0;
+    var stride = FIRST_STRIDE * volume.voxel;
+    while (t < room && event == LEFT) {
+        let ahead = min(t + stride, room);
+        let distances = distances_at(start + ahead * d);
+        let signs_ahead = signs_of(distances);
+        stride = stride_from(distances, start + ahead * d);
+        steps += 1u;
+        if (signs_ahead == signs) {
+            t = ahead;
+        } else {
+            let hit = surface_between(start + t * d, (ahead - t) * d, signs, distances);
+            t += hit.part * (ahead - t);
+            let flipped = signs ^ (1u << hit.region);
+            if (owner_of(flipped) != (*walk).region) {
+                *crossing = crossing_at(start + t * d, (*walk).p0, hit.normal, flipped);
+                event = INTERFACE;
+            } else {
+                // A surface hidden inside a region that goes first: nothing happens there.
+                signs = flipped;
+                stride = FIRST_STRIDE * volume.voxel;
+            }
+        }
+        if (has(HAS_OPAQUE) && event == LEFT && opaque_at(start + t * d).a > 0.5) { event = OPAQUE; }
+        if (steps >= volume.max_steps) { event = select(event, EXHAUSTED, event == LEFT && t < room); }
+    }
+    (*walk).signs = signs;
+    (*walk).steps = steps;
+    (*walk).x = start + t * d;
+    gather_region(walk, t);
+    return event;
+}
+
+fn stride_from(distances: vec4f, x: vec3f) -> f32 {
+    let nearest = min(min(abs(distances.x), abs(distances.y)), min(abs(distances.z), abs(distances.w)));
+    let stride = max(CAUTION * nearest, SHORTEST_STRIDE) * volume.voxel;
+    if (!has(HAS_OPAQUE)) { return stride; }
+    return min(stride, max(force_at(x).radius, 0.5 * volume.voxel));
+}
+
+fn gather_region(walk: ptr<function, Walk>, length_os: f32) {
+    let n = length((*walk).p0);
+    if ((*walk).region >= AMBIENT) {
+        (*walk).optical_path += n * length_os * volume.scale;
+    } else {
+        gather(walk, volume.region_absorption[(*walk).region].xyz, volume.region_emission[(*walk).region].xyz, n, length_os);
+    }
+}
+
+// The same along a curve: steps of the integrator, no longer than the distance to the surface.
+fn march_graded(walk: ptr<function, Walk>, crossing: ptr<function, Crossing>) -> u32 {
     let p_begin = (*walk).p0 + (*walk).q;
     var stride = FIRST_STRIDE * volume.voxel;
     while ((*walk).steps < volume.max_steps) {
         let room = intersect_box((*walk).x, normalize((*walk).p0 + (*walk).q), volume.proxy_half).y;
         if (room <= 1e-4 * volume.voxel) { return LEFT; }
-        let before = *walk;
-        let step = advance(walk, min(stride, room));
+        var before = *walk;
+        let step = take_step(walk, min(stride, room));
         if (step.opaque_at_probe) { return OPAQUE; }
         let distances = distances_at((*walk).x);
         let signs = signs_of(distances);
-        let nearest = min(min(abs(distances.x), abs(distances.y)), min(abs(distances.z), abs(distances.w)));
-        stride = max(CAUTION * nearest, SHORTEST_STRIDE) * volume.voxel;
-        if (has(HAS_OPAQUE)) { stride = min(stride, max(force_at((*walk).x).radius, 0.5 * volume.voxel)); }
+        stride = stride_from(distances, (*walk).x);
         if (signs != before.signs) {
-            if (reach_surface(walk, before, step.length, signs, crossing)) { return INTERFACE; }
+            let hit = surface_between(before.x, (*walk).x - before.x, before.signs, distances);
+            *walk = before;
+            _ = take_step(walk, hit.part * step.length);
+            let flipped = before.signs ^ (1u << hit.region);
+            if (owner_of(flipped) != before.region) {
+                *crossing = crossing_at((*walk).x, (*walk).p0 + (*walk).q, hit.normal, flipped);
+                return INTERFACE;
+            }
+            (*walk).signs = flipped;
             stride = FIRST_STRIDE * volume.voxel;
         }
         if (distance((*walk).p0 + (*walk).q, p_begin) > volume.pause) { return PAUSED; }
@@ -53,65 +122,36 @@ fn march_sharp(walk: ptr<function, Walk>, crossing: ptr<function, Crossing>) -> 
     return EXHAUSTED;
 }
 
-fn advance(walk: ptr<function, Walk>, reach: f32) -> Step {
-    if (is_graded((*walk).region)) { return take_step(walk, reach); }
-    let p = (*walk).p0;
-    let n = length(p);
-    (*walk).x += p * (reach / n);
-    (*walk).steps += 1u;
-    if ((*walk).region >= AMBIENT) {
-        gather(walk, vec3f(0.0), vec3f(0.0), n, reach);
-    } else {
-        gather(walk, volume.region_absorption[(*walk).region].xyz, volume.region_emission[(*walk).region].xyz, n, reach);
-    }
-    return Step(reach, has(HAS_OPAQUE) && opaque_at((*walk).x).a > 0.5);
-}
-
-// The step from `before` changed sides: put the walk on the surface that it met first. False when the far side belongs to the
-// same region (a surface hidden inside a region that goes first): nothing happens there, and the walk goes on behind it.
-fn reach_surface(walk: ptr<function, Walk>, before: Walk, reach: f32, signs: u32, crossing: ptr<function, Crossing>) -> bool {
-    var start = before;
-    let met = first_met(&start, walk, signs);
-    let chord = (*walk).x - before.x;
-    var part = met.part;
-    var surface = boundary_at(before.x + part * chord, met.region);
-    for (var i = 0; i < 2; i++) {
-        // Newton along the chord; where the ray grazes, the linear guess stands.
-        let slope = dot(per_metre(surface), chord);
-        part = clamp(part - select(0.0, surface.distance / slope, abs(slope) > 0.05 * length(chord) / volume.voxel), 0.0, 1.0);
-        surface = boundary_at(before.x + part * chord, met.region);
-    }
-    *walk = before;
-    _ = advance(walk, part * reach);
-    let flipped = before.signs ^ (1u << met.region);
-    let far = owner_of(flipped);
-    if (far == before.region) {
-        (*walk).signs = flipped;
-        return false;
-    }
-    let p = (*walk).p0 + (*walk).q;
+// p: optical momentum of arrival; the normal may point to either side.
+fn crossing_at(x: vec3f, p: vec3f, facing: vec3f, signs: u32) -> Crossing {
     let n_i = length(p);
-    let facing = normalize(per_metre(surface));
+    let far = owner_of(signs);
     let normal = select(facing, -facing, dot(facing, p) > 0.0);
-    *crossing = Crossing(n_i, region_index(far, (*walk).x), normal, p / n_i, far, flipped);
-    return true;
+    return Crossing(n_i, region_index(far, x), normal, p / n_i, far, signs);
 }
 
-struct Met { region: u32, part: f32 }
+struct Met {
+    region: u32,
+    part: f32,        // of the chord
+    normal: vec3f,    // unit, out of the region
+}
 
-// Of the regions whose sign changed, the one whose surface comes first, with its share of the step (by linear interpolation).
-fn first_met(before: ptr<function, Walk>, after: ptr<function, Walk>, signs: u32) -> Met {
-    let a = distances_at((*before).x);
-    let b = distances_at((*after).x);
-    let changed = signs ^ (*before).signs;
-    var met = Met(0u, 2.0);
-    for (var region = 0u; region < 4u; region++) {
-        if ((changed & (1u << region)) == 0u) { continue; }
-        let inside_before = ((*before).signs & (1u << region)) != 0u;
+// The first surface on a chord between whose ends signs change: found by linear interpolation, then put on the exact distances by
+// one step of Newton; where the ray grazes, the linear guess stands.
+fn surface_between(from_x: vec3f, chord: vec3f, signs: u32, distances: vec4f) -> Met {
+    let a = distances_at(from_x);
+    let changed = signs ^ signs_of(distances);
+    var region = 0u;
+    var part = 2.0;
+    for (var k = 0u; k < 4u; k++) {
+        if ((changed & (1u << k)) == 0u) { continue; }
         // A start on the surface may round to the wrong side of it.
-        let from_value = select(max(a[region], 1e-4), min(a[region], -1e-4), inside_before);
-        let part = clamp(from_value / (from_value - b[region]), 0.0, 1.0);
-        if (part < met.part) { met = Met(region, part); }
+        let from_value = select(max(a[k], 1e-4), min(a[k], -1e-4), (signs & (1u << k)) != 0u);
+        let guess = clamp(from_value / (from_value - distances[k]), 0.0, 1.0);
+        if (guess < part) { region = k; part = guess; }
     }
-    return met;
+    let boundary = boundary_at(from_x + part * chord, region);
+    let slope = dot(per_metre(boundary), chord);
+    let correction = select(0.0, boundary.distance / slope, abs(slope) > 0.05 * length(chord) / volume.voxel);
+    return Met(region, clamp(part - correction, 0.0, 1.0), normalize(per_metre(boundary)));
 }

@@ -18,8 +18,13 @@ fn march_smooth(walk: ptr<function, Walk>, passage: ptr<function, Passage>, cros
     let p_begin = (*walk).p0 + (*walk).q;
     while ((*walk).steps < volume.max_steps) {
         let p = (*walk).p0 + (*walk).q;
-        let room = intersect_box((*walk).x, normalize(p), volume.proxy_half).y;
-        if (room <= 1e-4 * volume.voxel) { return LEFT; }
+        // The distance to the nearest face is enough to know that a step stays inside.
+        let inside = volume.proxy_half - abs((*walk).x);
+        var room = min(inside.x, min(inside.y, inside.z));
+        if (room < max(volume.step, (*walk).radius)) {
+            room = intersect_box((*walk).x, normalize(p), volume.proxy_half).y;
+            if (room <= 1e-4 * volume.voxel) { return LEFT; }
+        }
         let step = take_step(walk, room);
         if (step.opaque_at_probe) { return OPAQUE; }
         if (note_passage(walk, passage, p, crossing)) { return INTERFACE; }

@@ -47,9 +47,11 @@ fn take_step(walk: ptr<function, Walk>, limit: f32) -> Step {
     }
     (*walk).radius = max(here.radius - after, 0.0);
     (*walk).steps += 1u;
-    let sigma = select_absorption(probe);
-    let glow = select_emission(probe);
-    gather(walk, sigma, glow, kept_n, reach);
+    if (has(HAS_ABSORPTION | HAS_EMISSION)) {
+        gather(walk, select_absorption(probe), select_emission(probe), kept_n, reach);
+    } else {
+        (*walk).optical_path += kept_n * reach * volume.scale;
+    }
     return Step(reach, has(HAS_OPAQUE) && opaque_at(probe).a > 0.5);
 }
 
