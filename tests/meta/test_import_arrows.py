@@ -34,6 +34,7 @@ EDGE = {
     "cluster",
     "bench",
     "demo",
+    "gallery",
 }  # nobody imports these; they may import all
 
 # Third-party packages that only some rooms may touch, even lazily.
