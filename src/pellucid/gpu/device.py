@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import platform
+import stat
 import tempfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -18,6 +20,11 @@ _REMEDIES = {
     "on Debian or Ubuntu `apt-get install mesa-vulkan-drivers libvulkan1`",
     "Darwin": "Metal is part of macOS 10.13 and later; update the system, or leave the sandbox that hides the GPU",
     "Windows": "install the graphics driver of the GPU's maker (DirectX 12 or Vulkan)",
+}
+_SOFTWARE_REMEDIES = {
+    "Linux": "on Debian or Ubuntu `apt-get install mesa-vulkan-drivers libvulkan1`",
+    "Darwin": "macOS has none; ask for any adapter instead",
+    "Windows": "WARP is part of Windows 10 and later; update the system, or ask for any adapter instead",
 }
 _OPTIONAL_FEATURES = ("float32-filterable", "timestamp-query", "float32-blendable")
 _TEXEL: dict[str, tuple[type, int]] = {
@@ -34,17 +41,25 @@ _TEXEL: dict[str, tuple[type, int]] = {
 }
 
 
-def adapter_remedy() -> str:
-    """What to install on this operating system so that an adapter is found."""
-    return _REMEDIES.get(platform.system(), "install a Vulkan, Metal or DirectX 12 driver")
+def adapter_remedy(software: bool = False) -> str:
+    """What to install on this operating system so that an adapter (or a software one) is found."""
+    remedies = _SOFTWARE_REMEDIES if software else _REMEDIES
+    return remedies.get(platform.system(), "install a Vulkan, Metal or DirectX 12 driver")
 
 
 def _private_runtime_folder() -> None:
     """Vulkan loaders complain, or fail, when XDG_RUNTIME_DIR is unset: give them a folder of our own."""
     if platform.system() == "Linux" and not os.environ.get("XDG_RUNTIME_DIR"):
         folder = os.path.join(tempfile.gettempdir(), f"pellucid-runtime-{os.getuid()}")
-        os.makedirs(folder, mode=0o700, exist_ok=True)
-        os.environ["XDG_RUNTIME_DIR"] = folder
+        with contextlib.suppress(FileExistsError):
+            os.mkdir(folder, mode=0o700)
+        # The name can be guessed: someone else may have put a folder, or a link, there first.
+        os.environ["XDG_RUNTIME_DIR"] = folder if _is_private(folder) else tempfile.mkdtemp(prefix="pellucid-runtime-")
+
+
+def _is_private(folder: str) -> bool:
+    status = os.lstat(folder)
+    return stat.S_ISDIR(status.st_mode) and status.st_uid == os.getuid() and not status.st_mode & 0o077
 
 
 def list_adapters() -> list[Any]:
@@ -57,7 +72,7 @@ def list_adapters() -> list[Any]:
     return sorted(adapters, key=lambda a: order.get(str(a.info.get("adapter_type")), 3))
 
 
-@dataclass
+@dataclass(eq=False)
 class Device:
     """A WebGPU device with the few operations that the passes need.
 
@@ -68,8 +83,8 @@ class Device:
     info: dict[str, Any]
     features: frozenset[str]
     limits: dict[str, int]
-    _samplers: dict[Any, Any] = field(default_factory=dict)
-    cache: dict[Any, Any] = field(default_factory=dict)
+    _samplers: dict[Any, Any] = field(default_factory=dict, repr=False)
+    cache: dict[Any, Any] = field(default_factory=dict, repr=False)
 
     @classmethod
     def create(cls, software: bool = False) -> Device:
@@ -77,22 +92,31 @@ class Device:
 
         Raises
         ------
-        NoAdapterError : when there is none; the message says what to install here.
+        NoAdapterError : when there is none, or none that opens; the message says what to install here.
         """
         adapters = list_adapters()
         if software:
             adapters = [a for a in adapters if a.info.get("adapter_type") == "CPU"]
         if not adapters:
             kind = "software Vulkan driver" if software else "graphics adapter"
-            raise NoAdapterError(f"no {kind} was found: {adapter_remedy()}")
-        adapter = adapters[0]
+            raise NoAdapterError(f"no {kind} was found: {adapter_remedy(software)}")
+        return cls._open(adapters[0])
+
+    @classmethod
+    def _open(cls, adapter: Any) -> Device:
+        import wgpu
+
         wanted = [f for f in _OPTIONAL_FEATURES if f in adapter.features]
         limits = {
             name: adapter.limits[name]
             for name in ("max-storage-buffer-binding-size", "max-buffer-size", "max-texture-dimension-3d")
             if name in adapter.limits
         }
-        device = adapter.request_device_sync(required_features=wanted, required_limits=limits)
+        try:
+            device = adapter.request_device_sync(required_features=wanted, required_limits=limits)
+        except (RuntimeError, wgpu.GPUError) as error:
+            name = adapter.info.get("device", "the adapter")
+            raise NoAdapterError(f"{name} could not be opened ({error}): {adapter_remedy()}") from error
         return cls(device, dict(adapter.info), frozenset(device.features), dict(device.limits))
 
     @property
@@ -107,6 +131,7 @@ class Device:
 
     @property
     def name(self) -> str:
+        """What the driver calls the adapter."""
         return str(self.info.get("device", "unknown adapter"))
 
     # ---- buffers -------------------------------------------------------------------------------------------
@@ -115,6 +140,11 @@ class Device:
         """Create a buffer from an array, or of a number of bytes (zeroed).
 
         usage : "storage", "uniform", "vertex", "index" or "indirect"; copies in both directions are always allowed.
+            Sizes are rounded up to 16 bytes.
+
+        Raises
+        ------
+        PellucidError : when it is more than the device allows, or than it has left.
         """
         import wgpu
 
@@ -124,25 +154,43 @@ class Device:
         flag |= wgpu.BufferUsage.COPY_SRC | wgpu.BufferUsage.COPY_DST
         size = int(data) if isinstance(data, int | np.integer) else data.nbytes
         self._check_buffer_size(size, usage, label)
-        out = self.wgpu.create_buffer(size=max(16, -(-size // 16) * 16), usage=flag, label=label)
+        size = max(16, -(-size // 16) * 16)
+        with self._memory(label or "buffer", f"{size} bytes"):
+            out = self.wgpu.create_buffer(size=size, usage=flag, label=label)
         if not isinstance(data, int | np.integer):
             self.write(out, data)
         return out
 
     def _check_buffer_size(self, size: int, usage: str, label: str) -> None:
         limit = self.limits["max-buffer-size"]
-        if usage == "storage":
-            limit = min(limit, self.limits["max-storage-buffer-binding-size"])
-        if size > limit:
+        if usage in ("storage", "uniform"):
+            limit = min(limit, self.limits[f"max-{usage}-buffer-binding-size"])
+        if size < 0 or size > limit:
             raise PellucidError(
-                f"{label or 'buffer'}: {size / 2**20:.0f} MiB is more than this device's limit of {limit / 2**20:.0f} MiB"
+                f"{label or 'buffer'}: {size} bytes; this device allows {usage} buffers of 0 to {limit}"
             )
 
+    @staticmethod
+    @contextlib.contextmanager
+    def _memory(label: str, what: str) -> Iterator[None]:
+        """Within the limits a device can still run out of memory."""
+        import wgpu
+
+        try:
+            yield
+        except wgpu.GPUError as error:
+            reason = str(error).strip().splitlines()[-1].strip()
+            raise PellucidError(f"{label}: {what} cannot be had on this device: {reason}") from error
+
     def write(self, buffer: Any, data: np.ndarray, offset: int = 0) -> None:
-        """Copy an array into a buffer; sizes are padded to four bytes."""
-        raw = np.ascontiguousarray(data).view(np.uint8).reshape(-1) if data.dtype != object else data
+        """Copy an array into a buffer at a byte offset; up to three zero bytes make its size a multiple of four."""
+        raw = np.ascontiguousarray(data).reshape(-1).view(np.uint8)
         if raw.size % 4:
             raw = np.concatenate([raw, np.zeros(4 - raw.size % 4, np.uint8)])
+        if offset % 4 or offset < 0 or offset + raw.size > buffer.size:
+            raise PellucidError(
+                f"{buffer.label or 'buffer'}: {raw.size} bytes at {offset} do not fit into {buffer.size} bytes in fours"
+            )
         if raw.size:
             self.wgpu.queue.write_buffer(buffer, offset, raw)
 
@@ -154,6 +202,8 @@ class Device:
         if count == 0:
             return np.zeros(shape, dtype)
         size = -(-count * dtype.itemsize // 4) * 4
+        if size > buffer.size:
+            raise PellucidError(f"{buffer.label or 'buffer'}: {size} bytes asked of a buffer of {buffer.size}")
         raw = self.wgpu.queue.read_buffer(buffer, 0, size)
         return np.frombuffer(raw, dtype=dtype, count=count).reshape(shape).copy()
 
@@ -181,7 +231,11 @@ class Device:
 
         array : (H, W, C), (L, H, W, C) when `layers` > 1, or (Z, Y, X[, C]) when dimension is "3d".
         size : (width, height[, depth]) when there is no array.
-        usage : any of "sample", "copy", "render", "storage".
+        usage : any of "sample", "copy", "render", "storage"; copies are always allowed.
+
+        Raises
+        ------
+        PellucidError : when it is more than the device allows or has left, or the array does not fit the format.
         """
         import wgpu
 
@@ -196,9 +250,10 @@ class Device:
             flag |= flags[name]
         extent = self._extent(array, size, dimension, layers)
         self._check_texture_size(extent, dimension, label)
-        texture = self.wgpu.create_texture(
-            size=extent, format=format, dimension=dimension, mip_level_count=mips, usage=flag, label=label
-        )
+        with self._memory(label or "texture", f"{' x '.join(map(str, extent))} texels of {format}"):
+            texture = self.wgpu.create_texture(
+                size=extent, format=format, dimension=dimension, mip_level_count=mips, usage=flag, label=label
+            )
         if array is not None:
             self.write_texture(texture, array)
         return texture
@@ -218,19 +273,32 @@ class Device:
         return array.shape[1], array.shape[0], 1
 
     def _check_texture_size(self, extent: tuple[int, int, int], dimension: str, label: str) -> None:
-        limit = self.limits[f"max-texture-dimension-{dimension}"]
-        checked = extent if dimension == "3d" else extent[:2]
-        if max(checked) > limit:
+        side = self.limits[f"max-texture-dimension-{dimension}"]
+        depth = side if dimension == "3d" else self.limits["max-texture-array-layers"]
+        if min(extent) < 1 or max(extent[:2]) > side or extent[2] > depth:
             raise PellucidError(
-                f"{label or 'texture'}: {' x '.join(map(str, checked))} is more than this device's {limit} a side"
+                f"{label or 'texture'}: {' x '.join(map(str, extent))} texels; "
+                f"this device allows 1 x 1 x 1 to {side} x {side} x {depth}"
             )
 
     def write_texture(self, texture: Any, array: np.ndarray, layer: int = 0, mip: int = 0) -> None:
-        """Fill a texture (one layer and level of a 2D one, all of a 3D one or a stack of layers)."""
+        """Fill one level of a texture: all of a 3D one, all layers with a stack of them, or else one layer.
+
+        Raises
+        ------
+        PellucidError : when the array has not the size or the channels of the level, or is not bytes for bytes.
+        """
         dtype, channels = _TEXEL[texture.format]
+        is_stack = texture.dimension == "3d" or array.ndim == 4
+        depth, height, width = array.shape[:3] if is_stack else (1, *array.shape[:2])
+        level = max(1, texture.height >> mip), max(1, texture.width >> mip)
+        if (height, width) != level or array.size != depth * height * width * channels:
+            where = f"{texture.label or 'texture'}: an array of shape {array.shape}"
+            raise PellucidError(f"{where} does not fill {level} texels of {texture.format}, {channels} channels each")
+        if dtype is np.uint8 and array.dtype != np.uint8:
+            # Radiance cast to bytes would be black without a word.
+            raise PellucidError(f"{texture.label or 'texture'}: {texture.format} takes uint8, not {array.dtype}")
         data: np.ndarray = np.ascontiguousarray(array, dtype=dtype)
-        is_stack = texture.dimension == "3d" or data.ndim == 4
-        depth, height, width = data.shape[:3] if is_stack else (1, *data.shape[:2])
         self.wgpu.queue.write_texture(
             {"texture": texture, "mip_level": mip, "origin": (0, 0, layer)},
             data,
@@ -239,7 +307,7 @@ class Device:
         )
 
     def read_texture(self, texture: Any, layer: int = 0, mip: int = 0) -> np.ndarray:
-        """Copy one layer and level of a 2D texture back as (H, W, C)."""
+        """Copy one layer (of a 3D texture: one slice) and level back as (H, W, C)."""
         dtype, channels = _TEXEL[texture.format]
         width, height = max(1, texture.width >> mip), max(1, texture.height >> mip)
         row = width * channels * np.dtype(dtype).itemsize

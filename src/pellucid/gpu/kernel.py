@@ -16,11 +16,11 @@ Bindings = Mapping[str, Any]
 class _Pipeline:
     """What compute and render share: module, explicit layouts made from the declarations, bind groups by name."""
 
-    def __init__(self, device: Device, module: str, stages: int, nearest: Sequence[str]) -> None:
+    def __init__(self, device: Device, module: str | ModuleSource, stages: int, nearest: Sequence[str]) -> None:
         self.device = device
-        self.module: ModuleSource = source(module)
-        self.label = module
-        self.shader = compile_module(device, module)
+        self.module = source(module) if isinstance(module, str) else module
+        self.label = self.module.name
+        self.shader = compile_module(device, self.module)
         self.groups: list[list[Binding]] = [
             sorted((b for b in self.module.bindings if b.group == g), key=lambda b: b.binding)
             for g in range(1 + max((b.group for b in self.module.bindings), default=-1))
@@ -32,31 +32,40 @@ class _Pipeline:
         self.layout = device.wgpu.create_pipeline_layout(bind_group_layouts=self._layouts)
         self._bound: dict[int, tuple[tuple[int, ...], Any, list[Any]]] = {}
 
-    def create(self, build: Any, **options: Any) -> Any:
+    def create(self, build: Any, entry: str, **options: Any) -> Any:
         import wgpu
 
         try:
             return build(layout=self.layout, label=self.label, **options)
         except wgpu.GPUError as error:
-            raise located(self.module, str(error)) from None
+            raise located(self.module, str(error), entry) from None
 
-    def bind(self, encoder: Any, bindings: Bindings) -> None:
-        for index, group in enumerate(self.groups):
-            missing = [b.name for b in group if b.name not in bindings]
-            if missing:
-                raise PellucidError(f"{self.label}: nothing is bound to {', '.join(missing)}")
-            resources = [bindings[b.name] for b in group]
-            encoder.set_bind_group(index, self._group(index, group, resources))
+    def resolve(self, bindings: Bindings) -> list[Any]:
+        """Bind groups in order; called before a pass begins, so that what is wrong here leaves no pass half open."""
+        missing = [b.name for group in self.groups for b in group if b.name not in bindings]
+        if missing:
+            raise PellucidError(f"{self.label}: nothing is bound to {', '.join(missing)}")
+        return [self._group(i, group, [bindings[b.name] for b in group]) for i, group in enumerate(self.groups)]
 
     def _group(self, index: int, group: list[Binding], resources: list[Any]) -> Any:
         key = tuple(id(r) for r in resources)
         cached = self._bound.get(index)
         if cached is None or cached[0] != key:
             entries = [{"binding": b.binding, "resource": _resource(r)} for b, r in zip(group, resources, strict=True)]
-            made = self.device.wgpu.create_bind_group(layout=self._layouts[index], entries=entries)
+            made = self._make_group(index, entries)
             # The resources are kept so that no id is used again while this entry stands.
             self._bound[index] = cached = (key, made, resources)
         return cached[1]
+
+    def _make_group(self, index: int, entries: list[dict[str, Any]]) -> Any:
+        import wgpu
+
+        try:
+            return self.device.wgpu.create_bind_group(layout=self._layouts[index], entries=entries)
+        except (wgpu.GPUError, TypeError) as error:
+            reason = " ".join(str(error).split())
+            names = ", ".join(f"{b.binding} {b.name}" for b in self.groups[index])
+            raise PellucidError(f"{self.label}: group {index} ({names}) cannot be bound: {reason}") from error
 
 
 def _resource(resource: Any) -> Any:
@@ -91,7 +100,7 @@ def _entry(device: Device, b: Binding, stages: int, nearest: Sequence[str]) -> d
         }  # fmt: skip
     elif match := re.match(r"texture_depth_(\w+)", b.type):
         entry["texture"] = {"sample_type": "depth", "view_dimension": match[1].replace("_", "-")}
-    elif match := re.match(r"texture_(\w+?)<(f32|u32|i32)>", b.type):
+    elif match := re.match(r"texture_(\dd|\dd_array|cube|cube_array)<(f32|u32|i32)>", b.type):
         floats = "unfilterable-float" if b.name in nearest else "float"
         kind = {"f32": floats, "u32": "uint", "i32": "sint"}[match[2]]
         entry["texture"] = {"sample_type": kind, "view_dimension": match[1].replace("_", "-")}
@@ -105,15 +114,19 @@ class ComputeKernel:
 
     Parameters
     ----------
-    module : path of the WGSL module under the package, without the suffix.
+    module : path of the WGSL module under the package, without the suffix; or an assembled one.
     constants : values of its `override` constants.
     nearest : names of textures that hold 32-bit floats and are only read texel by texel.
+
+    Raises
+    ------
+    ShaderError : when the module does not compile, or has not this entry point or these constants.
     """
 
     def __init__(
         self,
         device: Device,
-        module: str,
+        module: str | ModuleSource,
         entry: str = "main",
         constants: Mapping[str, float] | None = None,
         nearest: Sequence[str] = (),
@@ -125,7 +138,7 @@ class ComputeKernel:
         stage = {
             "module": self._pipeline.shader, "entry_point": entry, "constants": dict(constants or {})
         }  # fmt: skip
-        self.pipeline = self._pipeline.create(device.wgpu.create_compute_pipeline, compute=stage)
+        self.pipeline = self._pipeline.create(device.wgpu.create_compute_pipeline, entry, compute=stage)
 
     def run(
         self,
@@ -136,13 +149,20 @@ class ComputeKernel:
         label: str = "",
         indirect: tuple[Any, int] | None = None,
     ) -> None:
-        """Dispatch; encodes into `encoder`, or submits at once when there is none."""
+        """Dispatch; encodes into `encoder`, or submits at once when there is none.
+
+        Raises
+        ------
+        PellucidError : when a declared resource that the module uses is not bound, or is of another kind.
+        """
+        bound = self._pipeline.resolve(bindings)
         own = encoder is None
         encoder = self.device.wgpu.create_command_encoder() if own else encoder
         writes = timer.writes(label or self._pipeline.label) if timer is not None else None
         compute = encoder.begin_compute_pass(label=label, timestamp_writes=writes)
         compute.set_pipeline(self.pipeline)
-        self._pipeline.bind(compute, bindings)
+        for index, group in enumerate(bound):
+            compute.set_bind_group(index, group)
         if indirect is None:
             compute.dispatch_workgroups(*groups)
         else:
@@ -159,12 +179,16 @@ class RenderPass:
     ----------
     targets : colour formats. depth : depth format or None (depth is reversed: larger is nearer).
     vertex_buffers : WebGPU vertex buffer layouts. write_mask : bits 1 2 4 8 for r g b a.
+
+    Raises
+    ------
+    ShaderError : when the module does not compile, or has not these entry points or constants.
     """
 
     def __init__(
         self,
         device: Device,
-        module: str,
+        module: str | ModuleSource,
         vertex: str = "vs_main",
         fragment: str | None = "fs_main",
         targets: Sequence[str] = ("rgba32float",),
@@ -206,7 +230,7 @@ class RenderPass:
                 "depth_write_enabled": depth_write,
                 **(depth_bias or {}),
             }
-        self.pipeline = self._pipeline.create(device.wgpu.create_render_pipeline, **options)
+        self.pipeline = self._pipeline.create(device.wgpu.create_render_pipeline, fragment or vertex, **options)
 
     def run(
         self,
@@ -225,7 +249,13 @@ class RenderPass:
         timer: Any = None,
         label: str = "",
     ) -> None:
-        """Encode one pass that draws into `color` views and `depth`; what is not cleared is kept."""
+        """Encode one pass that draws into `color` views and `depth`; what is not cleared is kept.
+
+        Raises
+        ------
+        PellucidError : when a declared resource that the module uses is not bound, or is of another kind.
+        """
+        bound = self._pipeline.resolve(bindings or {})
         attachments = []
         for i, view in enumerate(color):
             load = "load" if clear is None else "clear"
@@ -245,7 +275,8 @@ class RenderPass:
             options["timestamp_writes"] = timer.writes(label or self._pipeline.label)
         draw = encoder.begin_render_pass(**options)
         draw.set_pipeline(self.pipeline)
-        self._pipeline.bind(draw, bindings or {})
+        for index, group in enumerate(bound):
+            draw.set_bind_group(index, group)
         if scissor is not None:
             draw.set_scissor_rect(*scissor)
         for slot, buffer in enumerate(vertex_buffers):

@@ -30,23 +30,34 @@ def struct(fields: Sequence[Field]) -> np.dtype:
 
     Parameters
     ----------
-    fields : (name, WGSL type) or (name, (WGSL type, count)); matrices are fields of COLUMNS (transpose a row-major matrix
-        before writing it); arrays need an element size that is a multiple of 16 bytes, as uniforms do.
+    fields : (name, WGSL type) or (name, (WGSL type, count)); matrices are fields of COLUMNS (transpose a row-major
+        matrix before writing it; a mat3x3f has four numbers a column, the last unused); arrays need an element size
+        that is a multiple of 16 bytes, as uniforms do.
+
+    Raises
+    ------
+    ValueError : for a type that is not known, or an array that uniforms do not allow.
     """
+    if not fields:
+        raise ValueError("WGSL has no empty structs")
     names, formats, offsets, titles = [], [], [], []
-    offset, alignment = 0, 16
+    offset, alignment = 0, 1
     for name, kind in fields:
-        wgsl, count = (kind, 0) if isinstance(kind, str) else kind
+        wgsl, count = (kind, None) if isinstance(kind, str) else kind
+        if wgsl not in _TYPES:
+            raise ValueError(f"{name}: no type '{wgsl}'; there are {', '.join(_TYPES)}")
         base, shape, size, align = _TYPES[wgsl]
-        if count:
-            if size % 16:
-                raise ValueError(f"{name}: an array of {wgsl} would need a stride that uniforms do not allow")
-            shape, size, align = (count, *shape), size * count, 16
+        if count is not None:
+            if size % 16 or count < 1:
+                raise ValueError(f"{name}: an array of {count} {wgsl} is not allowed in uniforms")
+            shape, size = (count, *shape), size * count
+        # The struct is as wide as its widest member asks, no more: arrays of it have that stride in WGSL.
+        alignment = max(alignment, align)
         offset = -(-offset // align) * align
         names.append(name)
         formats.append((base, shape))
         offsets.append(offset)
-        titles.append(wgsl if not count else f"array<{wgsl}, {count}>")
+        titles.append(wgsl if count is None else f"array<{wgsl}, {count}>")
         offset += size
     total = -(-offset // alignment) * alignment
     dtype = np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": total})

@@ -21,7 +21,12 @@ from pellucid.gpu.layout import wgsl_struct
 ROOT = Path(__file__).resolve().parent.parent
 _IMPORT = re.compile(r"^\s*//!import\s+(\S+)\s*$")
 _STRUCT = re.compile(r"^\s*//!struct\s+(\w+)\s+from\s+([\w.]+)\s*$")
-_BINDING = re.compile(r"@group\((\d+)\)\s*@binding\((\d+)\)\s*var\s*(?:<\s*([\w\s,]+?)\s*>)?\s*(\w+)\s*:\s*([^;]+);")
+_DIRECTIVE = re.compile(r"^\s*//!")
+_COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+_BINDING = re.compile(
+    r"((?:@(?:group|binding)\s*\(\s*\d+[iu]?\s*\)\s*){2})"
+    r"var\s*(?:<\s*([\w\s,]+?)\s*>)?\s*(\w+)\s*:\s*([^;]+);"
+)
 
 
 @dataclass(frozen=True)
@@ -46,39 +51,43 @@ class ModuleSource:
 
 
 @cache
-def source(name: str) -> ModuleSource:
-    """Assemble a module by its path under the package, without the suffix (``optics/fresnel``).
+def source(name: str, root: Path = ROOT) -> ModuleSource:
+    """Assemble a module by its path under `root` (the package), without the suffix (``optics/fresnel``).
 
     Raises
     ------
-    ShaderError : when a file or a struct that it names does not exist.
+    ShaderError : when a file or a struct that it names does not exist, or a directive cannot be read.
     """
     text: list[str] = []
     lines: list[tuple[str, int]] = []
-    _include(name, ("", 0), set(), text, lines)
+    _include(root, name, ("", 0), set(), text, lines)
     joined = "\n".join(text) + "\n"
     return ModuleSource(name, joined, tuple(lines), _used_bindings(joined))
 
 
 def _include(
-    name: str, wanted_at: tuple[str, int], seen: set[str], text: list[str], lines: list[tuple[str, int]]
+    root: Path, name: str, wanted_at: tuple[str, int], seen: set[str], text: list[str], lines: list[tuple[str, int]]
 ) -> None:
     if name in seen:
         return
     seen.add(name)
-    path = ROOT / f"{name}.wgsl"
+    path = root / f"{name}.wgsl"
     if not path.is_file():
         raise ShaderError(*(wanted_at if wanted_at[0] else (str(path), 0)), f"no WGSL module is called '{name}'")
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
         place = (f"{name}.wgsl", number)
         if match := _IMPORT.match(line):
-            _include(match[1], place, seen, text, lines)
+            _include(root, match[1], place, seen, text, lines)
         elif match := _STRUCT.match(line):
-            if f"struct {match[1]}" in seen:
+            if (key := f"struct {match[1]} from {match[2]}") in seen:
                 continue
-            seen.add(f"struct {match[1]}")
+            seen.add(key)
             text.append(_struct_text(match[1], match[2], place))
             lines.append(place)
+        elif _DIRECTIVE.match(line):
+            raise ShaderError(
+                *place, f"cannot read '{line.strip()}'; write //!import NAME or //!struct NAME from MODULE"
+            )
         else:
             text.append(line)
             lines.append(place)
@@ -92,29 +101,39 @@ def _struct_text(struct: str, module: str, place: tuple[str, int]) -> str:
 
 
 def _used_bindings(text: str) -> tuple[Binding, ...]:
-    code = re.sub(r"//[^\n]*", "", text)
+    code = without_comments(text)
     found = []
-    for group, binding, space, name, kind in _BINDING.findall(code):
+    for attributes, space, name, kind in _BINDING.findall(code):
         if len(re.findall(rf"\b{name}\b", code)) > 1:
-            found.append(Binding(name, int(group), int(binding), space.replace(" ", ""), kind.replace(" ", "")))
+            at = {word: int(number) for word, number in re.findall(r"@(\w+)\s*\(\s*(\d+)", attributes)}
+            found.append(Binding(name, at["group"], at["binding"], _packed(space), _packed(kind)))
     return tuple(found)
 
 
-def compile_module(device: Any, name: str) -> Any:
-    """Compile a module for a `Device`; cached on the device.
+def without_comments(text: str) -> str:
+    """WGSL without its comments; the lines stay where they are."""
+    return _COMMENT.sub(lambda match: "\n" * match[0].count("\n"), text)
+
+
+def _packed(text: str) -> str:
+    return "".join(text.split()).rstrip(",").replace(",>", ">")
+
+
+def compile_module(device: Any, module: str | ModuleSource) -> Any:
+    """Compile a module, by name or assembled, for a `Device`; cached on the device.
 
     Raises
     ------
     ShaderError : naming our file and line.
     """
-    key = ("module", name)
+    assembled = source(module) if isinstance(module, str) else module
+    key = ("module", assembled)
     if key not in device.cache:
-        device.cache[key] = compile_source(device, source(name))
+        device.cache[key] = _compile(device, assembled)
     return device.cache[key]
 
 
-def compile_source(device: Any, module: ModuleSource) -> Any:
-    """Compile assembled text; errors are mapped back to the files that it was assembled from."""
+def _compile(device: Any, module: ModuleSource) -> Any:
     import wgpu
 
     try:
@@ -123,11 +142,25 @@ def compile_source(device: Any, module: ModuleSource) -> Any:
         raise located(module, str(error)) from None
 
 
-def located(module: ModuleSource, message: str) -> ShaderError:
-    """Turn a compiler's message about the assembled text into a ShaderError about our file."""
-    number = _reported_line(message)
-    path, line = module.lines[min(max(number, 1), len(module.lines)) - 1] if number else (module.name, 0)
+def located(module: ModuleSource, message: str, entry: str = "") -> ShaderError:
+    """Turn a compiler's message about the assembled text into a ShaderError about our file.
+
+    What is said of a whole pipeline names no line: then the constant that it quotes, or the entry point, is the place.
+    """
+    quoted = re.findall(r"'(\w+)'", message)
+    number = (
+        _reported_line(message)
+        or next((n for name in quoted if (n := _line_of(module, rf"override\s+{name}"))), 0)
+        or (_line_of(module, rf"fn\s+{entry}") if entry else 0)
+    )
+    path, line = module.lines[min(number, len(module.lines)) - 1] if number else (f"{module.name}.wgsl", 1)
     return ShaderError(path, line, _core_message(message))
+
+
+def _line_of(module: ModuleSource, pattern: str) -> int:
+    code = without_comments(module.text)
+    found = re.search(rf"\b{pattern}\b", code)
+    return 1 + code.count("\n", 0, found.start()) if found else 0
 
 
 def _reported_line(message: str) -> int:

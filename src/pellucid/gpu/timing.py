@@ -12,17 +12,18 @@ from pellucid.gpu.device import Device
 class PassTimer:
     """Collects begin and end timestamps of labelled passes; a label used twice is summed.
 
-    Without timestamp queries `writes` returns None and `milliseconds` is empty: the caller then has only the wall clock.
+    Without timestamp queries `writes` returns None and `milliseconds` is empty: the caller then has only the wall
+    clock. Passes beyond `capacity` (at most 2048) since the last reading are not timed.
     """
 
     def __init__(self, device: Device, capacity: int = 128) -> None:
         self.device = device
         self.available = "timestamp-query" in device.features
         self._labels: list[str] = []
-        self._capacity = capacity
+        self._capacity = min(capacity, 2048)  # WebGPU: a query set holds at most 4096
         self._queries: Any = None
         if self.available:
-            self._queries = device.wgpu.create_query_set(type="timestamp", count=2 * capacity)
+            self._queries = device.wgpu.create_query_set(type="timestamp", count=2 * self._capacity)
 
     def writes(self, label: str) -> dict[str, Any] | None:
         """The `timestamp_writes` of a pass, or None when it cannot be timed."""
@@ -52,7 +53,9 @@ class PassTimer:
         ticks = self.device.read(resolved, np.uint64, (count, 2))
         out: dict[str, float] = {}
         for label, (begin, end) in zip(self._labels, ticks, strict=True):
-            out[label] = out.get(label, 0.0) + float(end - begin) * _tick_ns(self.device) * 1e-6
+            # Some drivers reset their clock inside a pass: unsigned ticks would make that centuries.
+            ticks_taken = max(int(end) - int(begin), 0)
+            out[label] = out.get(label, 0.0) + ticks_taken * _tick_ns(self.device) * 1e-6
         self._labels.clear()
         return out
 
