@@ -30,10 +30,11 @@ def main(output: Path = Path("out/examples"), size: tuple[int, int] = (800, 400)
     ]
     scene = pl.Scene(
         camera=pl.Camera(position=(0.0, 0.06, 0.26), target=(0.0, 0.02, 0.0), fov_deg=26),
-        environment=pl.Environment.sky(sun_elevation_deg=40, sun_azimuth_deg=-50, sun_disc=False),
-        lights=[pl.DirectionalLight.sun(elevation_deg=40, azimuth_deg=-50)],
+        environment=pl.Environment.sky(sun_elevation_deg=40, sun_azimuth_deg=-50, turbidity=2, sun_disc=False),
+        lights=[pl.DirectionalLight.sun(elevation_deg=40, azimuth_deg=-50, turbidity=2)],
         objects=[pl.Mesh.checkerboard(3.0, squares=150), *balls],
-        exposure=0.5,
+        exposure=0.7,
+        tone_mapping="khronos",
     )
     frame = pl.render(scene, size=size, samples=2)
     frame.save(output / "named_media.png")

@@ -63,6 +63,7 @@ def graded_lenses() -> Scene:
         )
         for index, x in ((shapes.luneburg, -0.05), (shapes.maxwell_fish_eye, 0.05))
     ]
+    sky, sun = stage.daylight()
     tiles = stage.grid(512, 2, (0.66, 0.62, 0.54), (0.015, 0.09, 0.13), 0.16)
     pencils = [
         Mesh.box((0.014, 0.075, 0.014), position=(x, 0.0375, -0.11), rotation=(0.0, 30.0, 0.0), base_color=color)
@@ -70,11 +71,11 @@ def graded_lenses() -> Scene:
                          (0.13, (0.05, 0.13, 0.42)))
     ]  # fmt: skip
     return Scene(
-        Camera((0.0, 0.115, 0.29), (0.0, 0.036, 0.0), fov_deg=32.0),
-        Environment.sky(sun_elevation_deg=40.0, sun_azimuth_deg=-50.0, sun_disc=False),
-        [DirectionalLight.sun(elevation_deg=40.0, azimuth_deg=-50.0)],
+        Camera((0.0, 0.09, 0.30), (0.0, 0.044, 0.0), fov_deg=32.0),
+        sky,
+        [sun],
         [stage.table(0.05, tiles, 60.0), *pencils, *lenses],
-        exposure=0.72,
+        exposure=0.62,
         tone_mapping="khronos",
     )
 
@@ -86,17 +87,18 @@ def hot_air() -> Scene:
         shapes.hot_air(width, height, warmer_k=900.0, sway=1.6), 96, (0.13, height, 0.13), boundary="smooth",
         position=(0.0, 0.5 * height, 0.0), smoothing_voxels=0.0,
     )  # fmt: skip
+    sky, sun = stage.daylight(40.0, 160.0)
     ruled = stage.grid(2048, 64, (0.70, 0.68, 0.62), (0.02, 0.06, 0.18), 0.2)
     card = Mesh.plane((2.4, 2.4), position=(0.0, 0.1, -20.0), rotation=(90.0, 0.0, 0.0))
     card = card.replace(base_color=(1.0, 1.0, 1.0), base_color_map=ruled, roughness=0.9)
-    plate = Mesh.box((0.13, 0.02, 0.13), position=(0.0, -0.009, 0.0), base_color=(0.02, 0.02, 0.022), roughness=0.3,
-                     emission=(0.10, 0.012, 0.0))  # fmt: skip
+    plate = Mesh.box((0.13, 0.02, 0.13), position=(0.0, -0.009, 0.0), base_color=(0.035, 0.036, 0.04), roughness=0.3,
+                     emission=(0.03, 0.003, 0.0))  # fmt: skip
     return Scene(
         Camera((0.0, 0.09, 4.0), (0.0, 0.06, 0.0), fov_deg=2.1),
-        Environment.sky(sun_elevation_deg=40.0, sun_azimuth_deg=160.0, sun_disc=False),
-        [DirectionalLight.sun(elevation_deg=40.0, azimuth_deg=160.0)],
+        sky,
+        [sun],
         [card, plate, plume],
-        exposure=0.72,
+        exposure=0.62,
         tone_mapping="khronos",
     )
 

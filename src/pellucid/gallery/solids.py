@@ -6,7 +6,7 @@ import numpy as np
 
 from pellucid.fields import shapes
 from pellucid.media import Medium
-from pellucid.scene import Camera, DirectionalLight, Environment, Mesh, Quality, RefractiveVolume, Scene
+from pellucid.scene import Camera, Environment, Mesh, Quality, RefractiveVolume, Scene
 
 from . import stage
 from .picture import Picture
@@ -19,14 +19,15 @@ def glass_sphere() -> Scene:
         shapes.sphere(radius), "N-BK7", 96, 2.15 * radius, position=(0.0, radius + stage.GAP_M, 0.0), dispersion=False
     )
     board = stage.table(0.08, stage.checks((0.72, 0.68, 0.60), (0.02, 0.05, 0.075)), 60.0, roughness=0.4)
+    sky, sun = stage.daylight()
     red = Mesh.sphere(0.026, 96, position=(-0.078, 0.026, -0.062), base_color=(0.62, 0.06, 0.03), roughness=0.3)
     gold = Mesh.sphere(0.017, 96, position=(0.075, 0.017, -0.03), base_color=(0.80, 0.44, 0.05), roughness=0.3)
     return Scene(
         Camera((0.05, 0.085, 0.22), (0.0, 0.037, 0.0), fov_deg=34.0),
-        Environment.sky(sun_elevation_deg=38.0, sun_azimuth_deg=-60.0, sun_disc=False),
-        [DirectionalLight.sun(elevation_deg=38.0, azimuth_deg=-60.0)],
+        sky,
+        [sun],
         [board, red, gold, ball],
-        exposure=0.72,
+        exposure=0.62,
         tone_mapping="khronos",
     )
 
@@ -87,13 +88,13 @@ def glass_hare() -> Scene:
         mesh, stage.tinted("N-BAK4", (13.0, 3.0, 6.0)), 144, position=(0.0, stage.GAP_M - lowest, 0.0),
         rotation=(0.0, 28.0, 0.0), dispersion=False,
     )  # fmt: skip
-    wall = Mesh.plane((6.0, 3.0), position=(0.0, 0.0, -0.7), rotation=(90.0, 0.0, 0.0), base_color=(0.11, 0.16, 0.17))
+    sky, sun = stage.daylight()
     return Scene(
         Camera((0.03, 0.068, 0.235), (0.0, 0.046, 0.0), fov_deg=27.0),
-        Environment.studio(),
-        [stage.key_light(2.0)],
-        [stage.table(0.4, stage.wood(), 4.0, roughness=0.4), wall, hare],
-        exposure=0.75,
+        sky,
+        [sun],
+        [stage.table(0.4, stage.wood(), 60.0, roughness=0.4), hare],
+        exposure=0.6,
         tone_mapping="khronos",
     )
 
@@ -123,7 +124,7 @@ PICTURES = (
     Picture(
         "glass-hare",
         "Animal from a mesh",
-        "A sitting animal of green glass: thick parts are darker, the ears are clear, and lamps glint on its back.",
+        "A sitting animal of green glass: thick parts are greener, and sky and boards stand upside down in head and belly.",
         glass_hare,
         5,
     ),

@@ -27,6 +27,12 @@ def key_light(irradiance: float = 2.0) -> DirectionalLight:
     return DirectionalLight(KEY_DIRECTION, (1.0, 0.97, 0.92), irradiance)
 
 
+def daylight(elevation_deg: float = 50.0, azimuth_deg: float = -60.0) -> tuple[Environment, DirectionalLight]:
+    """A clear sky without its sun, and the sun as a lamp that gives shadows."""
+    sky = Environment.sky(elevation_deg, azimuth_deg, 2.0, sun_disc=False)
+    return sky, DirectionalLight.sun(elevation_deg, azimuth_deg, 2.0)
+
+
 def jewellers_lamps(lamps: int = 40, radiance: float = 60.0, width_deg: float = 3.5) -> Environment:
     """The studio, dimmed, with many small bright lamps overhead: what makes a stone flash in colours.
 
