@@ -27,7 +27,6 @@ VolumeParams = struct(
         ("max_steps", "u32"),
         ("bounces", "u32"),
         ("region_count", "u32"),  # 0: the box itself is the surface
-        ("fields", "u32"),  # bits: 1 absorption, 2 emission, 4 opaque, 8 opaque meshes reach into the box
         ("writes_depth", "u32"),  # 0 for matter without a surface, such as hot air
         ("region_n", "vec4f"),
         ("region_absorption", ("vec4f", MAX_REGIONS)),  # 1/m of the world
@@ -35,10 +34,14 @@ VolumeParams = struct(
     ]
 )
 
-HAS_ABSORPTION, HAS_EMISSION, HAS_OPAQUE, MEETS_MESHES = 1, 2, 4, 8
-
 # The rectangle of the picture that one draw covers, and the channel that it is for (3: all of them).
 DrawParams = struct([("corner", "vec2u"), ("size", "vec2u"), ("channel", "u32")])
+
+# A ray that has left the refractive matter and still has to find out what it sees.
+LookRay = struct([("origin", "vec3f"), ("slot", "u32"), ("direction", "vec3f"), ("kind", "u32")])
+
+# How many rays wait, preceded by the workgroups that they fill: the arguments of an indirect dispatch.
+LookCount = struct([("groups_x", "u32"), ("groups_y", "u32"), ("groups_z", "u32"), ("count", "u32")])
 
 TraceParams = struct([("count", "u32")])
 

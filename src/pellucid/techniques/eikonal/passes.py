@@ -13,15 +13,19 @@ import numpy as np
 
 from pellucid.gpu import ComputeKernel, Device, RenderPass
 from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT, Targets
-from pellucid.techniques.eikonal.layouts import DrawParams, VolumeParams
+from pellucid.techniques.eikonal.layouts import DrawParams, LookCount, LookRay, VolumeParams
 from pellucid.techniques.eikonal.prepare import Prepared, prepare
-from pellucid.techniques.eikonal.resources import VolumeTextures, parameters, upload
+from pellucid.techniques.eikonal.resources import LOOKS_PER_PIXEL, VolumeTextures, constants_of, parameters, upload
 
 if TYPE_CHECKING:
     from pellucid.scene import Camera, RefractiveVolume
     from pellucid.surroundings import Surroundings
 
 EVERY_CHANNEL = 3
+# A picture is drawn in bands of rows, so that the lists of waiting rays keep to 100 MB.
+BAND_PIXELS = 1 << 18
+
+Rectangle = tuple[int, int, int, int]
 
 
 @dataclass
@@ -32,7 +36,8 @@ class _Resident:
     prepared: Prepared
     textures: VolumeTextures
     uniforms: list[Any]
-    draws: list[Any]  # one for each channel, the last for all at once
+    draws: list[list[Any]]  # for each band of the picture one for each channel, the last for all at once
+    meets_meshes: bool = False
 
 
 class EikonalTechnique:
@@ -43,7 +48,10 @@ class EikonalTechnique:
         self._residents: dict[Any, _Resident] = {}
         self._drawn: dict[int, tuple[_Resident, Any]] = {}
         self._kernels: dict[Any, ComputeKernel] = {}
-        self._scratch: Any = None
+        self._no_looks = device.buffer(np.array([(0, 1, 1, 0)], LookCount), "storage", "no looks")
+        self._lists: dict[str, Any] = {}
+        self._capacity = 0
+        self._sum = self._kernel("sum", {})
         self._composite = RenderPass(
             device,
             "techniques/eikonal/shaders/composite",
@@ -54,8 +62,8 @@ class EikonalTechnique:
 
     @property
     def nbytes(self) -> int:
-        """Bytes of GPU memory held by volumes."""
-        return sum(r.textures.nbytes for r in self._residents.values())
+        """Bytes of GPU memory held: volumes, and the lists of rays."""
+        return sum(r.textures.nbytes for r in self._residents.values()) + sum(b.size for b in self._lists.values())
 
     def prepare(self, objects: Sequence[RefractiveVolume], surroundings: Surroundings) -> None:
         """Make every volume resident, drop those that are gone, and write the parameters of each object."""
@@ -76,8 +84,7 @@ class EikonalTechnique:
         )
         textures = upload(self.device, prepared)
         uniforms = [self.device.buffer(VolumeParams.itemsize, "uniform", "volume") for _ in prepared.channels]
-        draws = [self.device.buffer(DrawParams.itemsize, "uniform", "draw") for _ in range(EVERY_CHANNEL + 1)]
-        return _Resident(item.volume, prepared, textures, uniforms, draws)
+        return _Resident(item.volume, prepared, textures, uniforms, [])
 
     def _write_parameters(self, item: RefractiveVolume, resident: _Resident, surroundings: Surroundings) -> None:
         world = item.object_to_world()
@@ -85,6 +92,7 @@ class EikonalTechnique:
         corners = _corners(resident.prepared) @ world[:3, :3].T + world[:3, 3]
         low, high = corners.min(axis=0), corners.max(axis=0)
         meets = any((lo <= high).all() and (hi >= low).all() for lo, hi in surroundings.mesh_bounds_ws)
+        resident.meets_meshes = meets
         for channel, uniform in enumerate(resident.uniforms):
             record = parameters(
                 resident.prepared, resident.textures, channel, item.quality, world, scale, meets_meshes=meets
@@ -105,63 +113,101 @@ class EikonalTechnique:
         scissor = _screen_rectangle(resident.prepared, item, camera, targets.size)
         if scissor is None:
             return
-        x, y, width, height = scissor
-        rows = self._pixels(width * height)
+        bands = _bands(scissor)
+        self._reserve(max(width * height for _, _, width, height in bands))
+        while len(resident.draws) < len(bands):
+            four = range(EVERY_CHANNEL + 1)
+            resident.draws.append([self.device.buffer(DrawParams.itemsize, "uniform", "draw") for _ in four])
+        for band, draws in zip(bands, resident.draws, strict=False):
+            self._draw_band(encoder, item, resident, draws, band, targets, surroundings, timer)
+
+    def _reserve(self, pixels: int) -> None:
+        """Room for `pixels` pixels and the rays that wait for them; it only grows."""
+        if pixels <= self._capacity:
+            return
+        self._capacity = pixels
+        sizes = {
+            "drawn": 16 * pixels,
+            "picture": 16 * pixels,
+            "look_rays": LookRay.itemsize * pixels * LOOKS_PER_PIXEL,
+            "look_values": 16 * pixels * LOOKS_PER_PIXEL,
+        }
+        self._lists = {name: self.device.buffer(size, "storage", name) for name, size in sizes.items()}
+        self._lists["look_queue"] = self.device.buffer(LookCount.itemsize, "indirect", "look queue")
+
+    def _draw_band(
+        self,
+        encoder: Any,
+        item: RefractiveVolume,
+        resident: _Resident,
+        draws: list[Any],
+        band: Rectangle,
+        targets: Targets,
+        surroundings: Surroundings,
+        timer: Any,
+    ) -> None:
+        """March, look, sum, for each channel; then put the band into the picture."""
+        x, y, width, height = band
         count = len(resident.uniforms)
-        kernel = self._kernel(item, resident.prepared)
         # Red goes first and starts each pixel anew; without dispersion one draw serves every channel.
         for channel in (0, 1, 2) if count == 3 else (EVERY_CHANNEL,):
             own = channel % EVERY_CHANNEL
-            self._write_draw(resident.draws[channel], channel, scissor)
-            kernel.run(
-                (-(-width // 8), -(-height // 8), 1),
-                {
-                    **surroundings.bindings,
-                    **resident.textures.channels[own],
-                    "volume": resident.uniforms[own],
-                    "screen_color": targets.color,
-                    "screen_depth": targets.depth,
-                    "draw": resident.draws[channel],
-                    "drawn": rows,
-                },
-                encoder,
-                timer,
-                "eikonal",
-            )
+            _write_draw(self.device, draws[channel], channel, band)
+            shared = {
+                **surroundings.bindings,
+                **self._lists,
+                "screen_color": targets.color,
+                "screen_depth": targets.depth,
+                "draw": draws[channel],
+            }
+            encoder.copy_buffer_to_buffer(self._no_looks, 0, self._lists["look_queue"], 0, LookCount.itemsize)
+            volume = {**resident.textures.channels[own], "volume": resident.uniforms[own]}
+            blocks = (-(-width // 8), -(-height // 8), 1)
+            march = self._march_kernel(item, resident)
+            march.run(blocks, {**shared, **volume}, encoder, timer, "eikonal march")
+            waiting = (self._lists["look_queue"], 0)
+            self._look_kernel(item).run((0, 0, 0), shared, encoder, timer, "eikonal look", indirect=waiting)
+            self._sum.run((-(-width * height // 64), 1, 1), shared, encoder, timer, "eikonal sum")
         self._composite.run(
             encoder,
             color=[targets.color_view],
             depth=targets.depth_view,
-            bindings={"draw": resident.draws[channel], "drawn": rows},
+            bindings={"draw": draws[channel], "picture": self._lists["picture"]},
             scissor=(x, y, width, height),
             timer=timer,
             label="eikonal composite",
         )
 
-    def _pixels(self, count: int) -> Any:
-        """Storage for what `count` pixels see; it only grows."""
-        if self._scratch is None or self._scratch.size < 16 * count:
-            self._scratch = self.device.buffer(16 * count, "storage", "eikonal pixels")
-        return self._scratch
-
-    def _write_draw(self, buffer: Any, channel: int, scissor: tuple[int, int, int, int]) -> None:
-        record = np.zeros((), DrawParams)
-        record["corner"], record["size"], record["channel"] = scissor[:2], scissor[2:], channel
-        self.device.write(buffer, record.reshape(1))
-
-    def _kernel(self, item: RefractiveVolume, prepared: Prepared) -> ComputeKernel:
-        constants = {
-            "EULER": float(item.quality.method == "euler"),
-            "ADAPTIVE": float(item.quality.adaptive),
-            "SCREEN_SPACE": float(item.surroundings == "screen"),
-        }
+    def _march_kernel(self, item: RefractiveVolume, resident: _Resident) -> ComputeKernel:
+        prepared = resident.prepared
+        constants = {**constants_of(prepared, item.quality), "MEETS_MESHES": float(resident.meets_meshes)}
         if prepared.sharp:
             constants["GRADED"] = float(prepared.graded)
-        key = (prepared.sharp, *constants.items())
+        name = "view_sharp" if prepared.sharp else "view_smooth"
+        return self._kernel(name, constants)
+
+    def _look_kernel(self, item: RefractiveVolume) -> ComputeKernel:
+        return self._kernel("look", {"SCREEN_SPACE": float(item.surroundings == "screen")})
+
+    def _kernel(self, name: str, constants: dict[str, float]) -> ComputeKernel:
+        key = (name, *constants.items())
         if key not in self._kernels:
-            name = f"techniques/eikonal/shaders/{'view_sharp' if prepared.sharp else 'view_smooth'}"
-            self._kernels[key] = ComputeKernel(self.device, name, constants=constants, nearest=("screen_color",))
+            module = f"techniques/eikonal/shaders/{name}"
+            self._kernels[key] = ComputeKernel(self.device, module, constants=constants, nearest=("screen_color",))
         return self._kernels[key]
+
+
+def _write_draw(device: Device, buffer: Any, channel: int, band: Rectangle) -> None:
+    record = np.zeros((), DrawParams)
+    record["corner"], record["size"], record["channel"] = band[:2], band[2:], channel
+    device.write(buffer, record.reshape(1))
+
+
+def _bands(rectangle: Rectangle) -> list[Rectangle]:
+    """Cut a rectangle into rows of at most `BAND_PIXELS` pixels, which bounds the memory of the lists."""
+    x, y, width, height = rectangle
+    rows = max(1, BAND_PIXELS // width)
+    return [(x, y + at, width, min(rows, height - at)) for at in range(0, height, rows)]
 
 
 def _key(item: RefractiveVolume, number: int) -> Any:
@@ -178,7 +224,7 @@ def _corners(prepared: Prepared) -> np.ndarray:
 
 def _screen_rectangle(
     prepared: Prepared, item: RefractiveVolume, camera: Camera, size: tuple[int, int]
-) -> tuple[int, int, int, int] | None:
+) -> Rectangle | None:
     """The pixels that a volume's box can cover: (x, y, width, height), or None when it is out of the picture."""
     clip = camera.projection_matrix(size) @ camera.view_matrix() @ item.object_to_world()
     corners = np.concatenate([_corners(prepared), np.ones((8, 1))], axis=1) @ clip.T

@@ -9,14 +9,7 @@ import numpy as np
 
 from pellucid.gpu import Device
 from pellucid.scene.quality import Quality
-from pellucid.techniques.eikonal.layouts import (
-    HAS_ABSORPTION,
-    HAS_EMISSION,
-    HAS_OPAQUE,
-    MEETS_MESHES,
-    VolumeParams,
-    blank_params,
-)
+from pellucid.techniques.eikonal.layouts import VolumeParams, blank_params
 from pellucid.techniques.eikonal.prepare import Prepared
 
 # The box of a volume whose box is its surface is entered from this far outside, voxels.
@@ -25,6 +18,8 @@ BOX_MARGIN_VOXELS = 1.5
 # momentum; the chord then departs from the arc by about 1 % of its length.
 PAUSE_TURN = 0.1
 FAR = 1e30
+# Rays that one pixel may send into the surroundings; more of them see the environment only.
+LOOKS_PER_PIXEL = 8
 
 
 @dataclass(frozen=True)
@@ -34,7 +29,6 @@ class VolumeTextures:
     channels: tuple[dict[str, Any], ...]
     force_scales: tuple[float, ...]
     index_scales: tuple[float, ...]
-    fields: int
     nbytes: int
 
 
@@ -71,10 +65,8 @@ def upload(device: Device, prepared: Prepared) -> VolumeTextures:
             }
             made[key] = ({**shared, **own}, force_scale, index_scale)
         rows.append(made[key])
-    bits = (HAS_ABSORPTION, prepared.absorption), (HAS_EMISSION, prepared.emission), (HAS_OPAQUE, prepared.opaque)
-    fields = sum(bit for bit, field in bits if field is not None)
     bindings, force_scales, index_scales = zip(*rows, strict=True)
-    return VolumeTextures(bindings, force_scales, index_scales, fields, size)
+    return VolumeTextures(bindings, force_scales, index_scales, size)
 
 
 def _scaled(field: np.ndarray | None, channels: int) -> tuple[np.ndarray | None, float]:
@@ -94,6 +86,17 @@ def _fit(array: np.ndarray, channels: int) -> np.ndarray:
     if data.shape[-1] < channels:
         data = np.concatenate([data, np.zeros((*data.shape[:3], channels - data.shape[-1]), data.dtype)], axis=-1)
     return data
+
+
+def constants_of(prepared: Prepared, quality: Quality) -> dict[str, float]:
+    """The override constants that the march of a volume is compiled with."""
+    return {
+        "EULER": float(quality.method == "euler"),
+        "ADAPTIVE": float(quality.adaptive),
+        "ABSORBS": float(prepared.absorption is not None),
+        "EMITS": float(prepared.emission is not None),
+        "BLOCKS": float(prepared.opaque is not None),
+    }
 
 
 def parameters(
@@ -129,7 +132,6 @@ def parameters(
     out["bounces"] = quality.bounces
     out["writes_depth"] = prepared.sharp or np.isfinite(prepared.boundary_on_per_m)
     out["region_count"] = len(row.region_n)
-    out["fields"] = textures.fields | (MEETS_MESHES if meets_meshes else 0)
     for k, n in enumerate(row.region_n):
         out["region_n"][k] = n
         out["region_absorption"][k, :3] = prepared.region_absorption[k]

@@ -13,7 +13,7 @@ from pellucid.scene.quality import Quality
 from pellucid.scene.refractive_volume import RefractiveVolume
 from pellucid.techniques.eikonal.layouts import TraceParams, TraceRay
 from pellucid.techniques.eikonal.prepare import Prepared, prepare
-from pellucid.techniques.eikonal.resources import VolumeTextures, parameters, upload
+from pellucid.techniques.eikonal.resources import VolumeTextures, constants_of, parameters, upload
 
 STATUS = ("missed", "left", "opaque", "exhausted")
 
@@ -124,8 +124,7 @@ def _kernel(device: Device, prepared: Prepared, quality: Quality) -> ComputeKern
     constants = {
         "SHARP": float(prepared.sharp),
         "GRADED": float(prepared.graded),
-        "EULER": float(quality.method == "euler"),
-        "ADAPTIVE": float(quality.adaptive),
+        **constants_of(prepared, quality),
     }
     key = ("trace", *constants.values())
     if key not in device.cache:

@@ -2,10 +2,11 @@
 
 //!struct VolumeParams from techniques.eikonal.layouts
 
-const HAS_ABSORPTION = 1u;
-const HAS_EMISSION = 2u;
-const HAS_OPAQUE = 4u;
-const MEETS_MESHES = 8u;
+// Which fields the volume has. Constants rather than parameters: a driver that runs lanes in step does not skip a branch that
+// none of them takes, so the look-up of a field that is not there would cost as much as of one that is.
+override ABSORBS: bool = true;
+override EMITS: bool = true;
+override BLOCKS: bool = true;      // has opaque voxels
 
 @group(0) @binding(0) var<uniform> volume: VolumeParams;
 @group(0) @binding(1) var volume_sampler: sampler;

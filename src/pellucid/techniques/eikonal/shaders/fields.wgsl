@@ -20,19 +20,18 @@ fn index_at(x: vec3f) -> f32 {
     return volume.ambient_n + textureSampleLevel(index_field, volume_sampler, texture_position(x), 0.0).x * volume.index_scale;
 }
 
-fn has(field: u32) -> bool {
-    return (volume.fields & field) != 0u;
-}
-
 // Absorption per channel, 1/world metre.
 fn absorption_at(x: vec3f) -> vec3f {
+    if (!ABSORBS) { return vec3f(0.0); }
     return textureSampleLevel(absorption_field, volume_sampler, texture_position(x), 0.0).xyz;
 }
 
 fn emission_at(x: vec3f) -> vec3f {
+    if (!EMITS) { return vec3f(0.0); }
     return textureSampleLevel(emission_field, volume_sampler, texture_position(x), 0.0).xyz;
 }
 
 fn opaque_at(x: vec3f) -> vec4f {
+    if (!BLOCKS) { return vec4f(0.0); }
     return textureSampleLevel(opaque_field, volume_sampler, texture_position(x), 0.0);
 }

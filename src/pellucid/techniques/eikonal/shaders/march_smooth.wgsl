@@ -12,46 +12,44 @@ struct Passage {
 }
 
 // Go on until the ray leaves, meets something opaque, has passed a boundary, or has turned by `pause`.
-// The indices and the normal of a passed boundary follow from the momenta on its two sides: a plane boundary
-// changes p along its normal only, and |p| is the index.
 fn march_smooth(walk: ptr<function, Walk>, passage: ptr<function, Passage>, crossing: ptr<function, Crossing>) -> u32 {
     let p_begin = (*walk).p0 + (*walk).q;
-    while ((*walk).steps < volume.max_steps) {
+    var event = EXHAUSTED;
+    var over = false;
+    while (event == EXHAUSTED && !over && (*walk).steps < volume.max_steps) {
         let p = (*walk).p0 + (*walk).q;
-        // The distance to the nearest face is enough to know that a step stays inside.
-        let inside = volume.proxy_half - abs((*walk).x);
-        var room = min(inside.x, min(inside.y, inside.z));
-        if (room < max(volume.step, (*walk).radius)) {
-            room = intersect_box((*walk).x, normalize(p), volume.proxy_half).y;
-            if (room <= 1e-4 * volume.voxel) { return LEFT; }
-        }
+        let room = room_ahead(walk, p);
         let step = take_step(walk, room);
-        if (step.opaque_at_probe) { return OPAQUE; }
-        if (note_passage(walk, passage, p, crossing)) { return INTERFACE; }
-        if (distance((*walk).p0 + (*walk).q, p_begin) > volume.pause) { return PAUSED; }
+        over = note_passage(walk, passage, p);
+        event = select(event, PAUSED, distance((*walk).p0 + (*walk).q, p_begin) > volume.pause);
+        event = select(event, OPAQUE, step.opaque_at_probe);
+        event = select(event, LEFT, room <= 1e-4 * volume.voxel);
     }
-    return EXHAUSTED;
+    // What a boundary does is worked out here, once, and not in the loop.
+    if (over) { settle(walk, (*passage).p_before); }
+    if (over && event == EXHAUSTED && cross_over((*passage).p_before, (*walk).p0 + (*walk).q, crossing)) { return INTERFACE; }
+    return select(event, PAUSED, over && event == EXHAUSTED);
 }
 
-// True when a boundary has just been passed and light was split there. A ray that turned back (total reflection) or that only
-// grazed has the same index on both sides and loses nothing.
-fn note_passage(walk: ptr<function, Walk>, passage: ptr<function, Passage>, p: vec3f, crossing: ptr<function, Crossing>) -> bool {
-    let p_now = (*walk).p0 + (*walk).q;
-    let gradient = (*walk).bend * length(p_now);
-    if ((*passage).inside) {
-        if (gradient > (*passage).steepest) {
-            (*passage).steepest = gradient;
-            (*passage).x_steepest = (*walk).x;
-        }
-        if (gradient < volume.boundary_off) {
-            (*passage).inside = false;
-            settle(walk, (*passage).p_before);
-            return cross_over((*passage).p_before, (*walk).p0 + (*walk).q, crossing);
-        }
-    } else if (gradient > volume.boundary_on) {
-        *passage = Passage(true, p, (*walk).x, gradient);
-    }
-    return false;
+// Distance to where the ray leaves the box: the distance to the nearest face is enough to know that a step stays inside.
+fn room_ahead(walk: ptr<function, Walk>, p: vec3f) -> f32 {
+    let inside = volume.proxy_half - abs((*walk).x);
+    let nearest = min(inside.x, min(inside.y, inside.z));
+    let exact = intersect_box((*walk).x, normalize(p), volume.proxy_half).y;
+    return select(exact, nearest, nearest > max(volume.step, (*walk).radius));
+}
+
+// True when a boundary has just been passed.
+fn note_passage(walk: ptr<function, Walk>, passage: ptr<function, Passage>, p: vec3f) -> bool {
+    let gradient = (*walk).bend * length((*walk).p0 + (*walk).q);
+    let begins = !(*passage).inside && gradient > volume.boundary_on;
+    let steeper = begins || ((*passage).inside && gradient > (*passage).steepest);
+    let over = (*passage).inside && gradient < volume.boundary_off;
+    (*passage).p_before = select((*passage).p_before, p, begins);
+    (*passage).x_steepest = select((*passage).x_steepest, (*walk).x, steeper);
+    (*passage).steepest = select((*passage).steepest, gradient, steeper);
+    (*passage).inside = ((*passage).inside || begins) && !over;
+    return over;
 }
 
 // |p| = n holds along a ray, but sampled forces are not exactly the gradient of anything: make it hold again behind a boundary,
@@ -66,13 +64,14 @@ fn settle(walk: ptr<function, Walk>, p_before: vec3f) {
     if (wanted > 0.0) { (*walk).q += (sign(along) * sqrt(wanted) - along) * normal; }
 }
 
+// The indices and the normal of a boundary follow from the momenta on its two sides: a plane boundary changes p along its normal
+// only, and |p| is the index. False where no light is split off: a ray that turned back (total reflection) or that only grazed.
 fn cross_over(p_before: vec3f, p_after: vec3f, crossing: ptr<function, Crossing>) -> bool {
     let n_i = length(p_before);
     let n_t = length(p_after);
     let change = p_after - p_before;
     let normal = normalize(select(change, p_before, dot(change, change) < 1e-12));
     let towards = dot(p_before, normal);
-    if (towards * dot(p_after, normal) <= 0.0 || abs(n_t - n_i) < 1e-5) { return false; }
     *crossing = Crossing(n_i, n_t, -sign(towards) * normal, p_before / n_i, 0u, 0u);
-    return true;
+    return towards * dot(p_after, normal) > 0.0 && abs(n_t - n_i) >= 1e-5;
 }

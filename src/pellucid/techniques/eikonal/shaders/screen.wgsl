@@ -3,8 +3,8 @@
 //!import surroundings/shaders/bindings
 //!import surroundings/shaders/environment
 
-@group(0) @binding(10) var screen_color: texture_2d<f32>;
-@group(0) @binding(11) var screen_depth: texture_depth_2d;
+@group(0) @binding(3) var screen_color: texture_2d<f32>;
+@group(0) @binding(4) var screen_depth: texture_depth_2d;
 
 const SCREEN_STEPS = 64;
 const SCREEN_REFINEMENTS = 6;

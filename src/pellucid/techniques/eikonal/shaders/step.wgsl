@@ -47,25 +47,15 @@ fn take_step(walk: ptr<function, Walk>, limit: f32) -> Step {
     }
     (*walk).radius = max(here.radius - after, 0.0);
     (*walk).steps += 1u;
-    if (has(HAS_ABSORPTION | HAS_EMISSION)) {
-        gather(walk, select_absorption(probe), select_emission(probe), kept_n, reach);
+    if (ABSORBS || EMITS) {
+        gather(walk, absorption_at(probe), emission_at(probe), kept_n, reach);
     } else {
         (*walk).optical_path += kept_n * reach * volume.scale;
     }
-    return Step(reach, has(HAS_OPAQUE) && opaque_at(probe).a > 0.5);
+    return Step(reach, BLOCKS && opaque_at(probe).a > 0.5);
 }
 
 fn index_for_euler(n: f32, x: vec3f) -> f32 {
     if (!EULER) { return n; }
     return index_at(x);
-}
-
-fn select_absorption(x: vec3f) -> vec3f {
-    if (!has(HAS_ABSORPTION)) { return vec3f(0.0); }
-    return absorption_at(x);
-}
-
-fn select_emission(x: vec3f) -> vec3f {
-    if (!has(HAS_EMISSION)) { return vec3f(0.0); }
-    return emission_at(x);
 }

@@ -1,17 +1,15 @@
 // From a pixel to the volume and back: what both view shaders share.
 
 //!import surroundings/shaders/camera
-//!import surroundings/shaders/irradiance
-//!import surroundings/shaders/radiance
-//!import techniques/eikonal/shaders/screen
+//!import surroundings/shaders/environment
+//!import surroundings/shaders/raycast
+//!import techniques/eikonal/shaders/looks
 //!import techniques/eikonal/shaders/box
 //!import techniques/eikonal/shaders/splitting
 //!import techniques/eikonal/shaders/bindings
 //!import techniques/eikonal/shaders/fields
 
-//!struct DrawParams from techniques.eikonal.layouts
-
-override SCREEN_SPACE: bool = false;   // see nearby geometry in the picture drawn so far instead of by rays
+override MEETS_MESHES: bool = false;   // opaque meshes reach into the box
 
 struct Seen {
     radiance: vec3f,
@@ -29,9 +27,9 @@ struct ViewRay {
 const EVERY_CHANNEL = 3u;
 const UNSEEN = -1.0;
 
-@group(0) @binding(8) var<uniform> draw: DrawParams;
 // rgb: radiance; w: value for the depth buffer, or UNSEEN where the picture stays as it is
 @group(0) @binding(9) var<storage, read_write> drawn: array<vec4f>;
+@group(0) @binding(13) var screen_depth: texture_depth_2d;
 
 // A pixel for each invocation of an 8 x 8 workgroup; eight neighbours in a row of lanes form a block of 4 x 2.
 fn pixel_of(group: vec2u, lane: u32) -> vec2u {
@@ -56,10 +54,20 @@ fn direction_to_world(d: vec3f) -> vec3f {
     return normalize((volume.world_from_object * vec4f(d, 0.0)).xyz);
 }
 
-// What a ray that leaves the volume at x sees.
-fn outside_radiance(x: vec3f, d: vec3f) -> vec3f {
-    if (SCREEN_SPACE) { return screen_radiance(to_world(x), direction_to_world(d)); }
-    return radiance_along(to_world(x), direction_to_world(d));
+// A ray that ends: outside, where it will be looked along, or on an opaque voxel, whose light will be looked up.
+struct Ending {
+    kind: u32,          // LOOK_ALONG or LOOK_IRRADIANCE
+    x: vec3f,
+    d: vec3f,           // direction, or normal of the voxel
+    weight: vec3f,      // 0: none
+}
+
+// What it sees, now or later; if there is no room for later, as if nothing but the environment were there.
+fn end_ray(ending: Ending) -> vec3f {
+    let d = direction_to_world(ending.d);
+    if (all(ending.weight <= vec3f(0.0)) || look_later(ending.kind, to_world(ending.x), d, ending.weight)) { return vec3f(0.0); }
+    if (ending.kind == LOOK_IRRADIANCE) { return ending.weight * environment_irradiance(d); }
+    return ending.weight * environment_radiance(d);
 }
 
 // Where the budget ends: the environment, so that no energy is lost from a uniform one.
@@ -70,34 +78,43 @@ fn far_radiance(d: vec3f) -> vec3f {
 // The nearest opaque mesh on the piece from `a` to `b`, where meshes reach into the box.
 fn mesh_between(a: vec3f, b: vec3f) -> SurfaceHit {
     let reach = distance(a, b);
-    if ((volume.fields & MEETS_MESHES) == 0u || reach <= 0.0) { return SurfaceHit(); }
+    if (!MEETS_MESHES || reach <= 0.0) { return SurfaceHit(); }
     return trace_opaque(to_world(a), direction_to_world(b - a), reach * volume.scale);
 }
 
 // An opaque voxel is matt; its normal is where its coverage falls.
-fn opaque_radiance(x: vec3f, d: vec3f) -> vec3f {
+fn opaque_ending(x: vec3f, d: vec3f, weight: vec3f) -> Ending {
+    if (!BLOCKS) { return Ending(); }
     let h = volume.voxel;
     let slope = vec3f(
         opaque_at(x + vec3f(h, 0.0, 0.0)).a - opaque_at(x - vec3f(h, 0.0, 0.0)).a,
         opaque_at(x + vec3f(0.0, h, 0.0)).a - opaque_at(x - vec3f(0.0, h, 0.0)).a,
         opaque_at(x + vec3f(0.0, 0.0, h)).a - opaque_at(x - vec3f(0.0, 0.0, h)).a);
     let normal = normalize(select(-slope, -d, dot(slope, slope) < 1e-6));
-    return opaque_at(x).rgb * surface_irradiance(to_world(x), direction_to_world(normal)) / 3.14159265;
+    return Ending(LOOK_IRRADIANCE, x, normal, weight * opaque_at(x).rgb / 3.14159265);
 }
 
-// Keep what a pixel sees: one channel of it, or all; nothing where something nearer is drawn already.
+// Where a pixel's ray enters, unless something nearer is drawn there already.
+fn enter(pixel: vec2u, ray: CameraRay) -> ViewRay {
+    look_pixel = pixel.y * draw.size.x + pixel.x;
+    look_used = 0u;
+    var entry = to_object(ray);
+    let before = textureLoad(screen_depth, draw.corner + pixel, 0);
+    entry.meets = entry.meets && depth_of(ray.origin + (entry.distance + volume.scale * volume.voxel) * ray.direction) >= before;
+    return entry;
+}
+
+// Keep what is known of a pixel so far; the rays that it waits for are added by `sum`.
 fn keep(pixel: vec2u, ray: CameraRay, seen: Seen) {
-    let at = draw.corner + pixel;
-    let index = pixel.y * draw.size.x + pixel.x;
-    let before = textureLoad(screen_depth, at, 0);
+    let before = textureLoad(screen_depth, draw.corner + pixel, 0);
     let own = depth_of(ray.origin + seen.distance * ray.direction);
     let visible = seen.touched && own >= before;
-    let radiance = select(textureLoad(screen_color, at, 0).rgb, seen.radiance, visible);
     let depth = select(UNSEEN, select(before, own, volume.writes_depth != 0u), visible);
-    switch draw.channel {
-        case 0u: { drawn[index] = vec4f(radiance.x, 0.0, 0.0, depth); }
-        case 1u: { drawn[index].y = radiance.y; drawn[index].w = max(drawn[index].w, depth); }
-        case 2u: { drawn[index].z = radiance.z; drawn[index].w = max(drawn[index].w, depth); }
-        default: { drawn[index] = vec4f(radiance, depth); }
-    }
+    drawn[look_pixel] = vec4f(seen.radiance, depth);
+    if (look_used == 0u) { look_values[look_pixel] = vec4f(0.0); }
+    look_values[look_pixel].w = f32(look_used);
+}
+
+fn largest(v: vec3f) -> f32 {
+    return max(v.x, max(v.y, v.z));
 }

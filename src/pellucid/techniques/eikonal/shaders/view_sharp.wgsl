@@ -19,7 +19,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
     let pixel = pixel_of(group.xy, lane);
     if (any(pixel >= draw.size)) { return; }
     let ray = camera_ray(vec2f(draw.corner + pixel) + 0.5);
-    let entry = to_object(ray);
+    let entry = enter(pixel, ray);
     var seen = Seen(vec3f(0.0), 0.0, false);
     if (entry.meets) { seen = look_into(entry); }
     keep(pixel, ray, seen);
@@ -34,86 +34,76 @@ fn look_into(entry: ViewRay) -> Seen {
     var radiance = vec3f(0.0);
     var weight = vec3f(1.0);
     var generation = 0u;
-    var first = -1.0;
-    if (walk.region < AMBIENT) { first = entry.distance; }
-    loop {
+    var first = select(-1.0, entry.distance, walk.region < AMBIENT);
+    var going = true;
+    while (going) {
         let from_x = walk.x;
         walk.emitted = vec3f(0.0);
         walk.transmittance = vec3f(1.0);
         walk.steps = 0u;
         let event = march_sharp(&walk, &crossing);
+        let d = normalize(walk.p0 + walk.q);
         // A last piece that is straight is looked along as a whole: a mesh may lie just where it leaves the box.
         let straight_out = event == LEFT && !is_graded(walk.region);
-        var blocked = SurfaceHit();
-        if (!straight_out) { blocked = mesh_between(from_x, walk.x); }
-        var done = true;
-        if (blocked.valid) {
-            if (first < 0.0) { return Seen(vec3f(0.0), 0.0, false); }
-            // The piece was homogeneous, or short: the part of it up to the mesh keeps its share of the exponent.
-            let part = blocked.t / max(distance(from_x, walk.x) * volume.scale, 1e-20);
-            let kept = pow(max(walk.transmittance, vec3f(1e-30)), vec3f(part));
-            radiance += weight * (walk.emitted * part + kept * shade_hit(blocked, to_world(from_x), direction_to_world(walk.x - from_x)));
-        } else {
-            radiance += weight * walk.emitted;
-            weight *= walk.transmittance;
-            if (event == INTERFACE) {
-                if (first < 0.0) { first = entry.distance + distance(entry.x, walk.x) * volume.scale; }
-                done = false;
-                generation += 1u;
-                let split = split_at(crossing);
-                let heavier_refracts = split.reflectance < 0.5;
-                let light = weight * select(1.0 - split.reflectance, split.reflectance, heavier_refracts);
-                // Both directions as branches; the heavier goes on, the lighter waits, or ends in the environment.
-                let through = Branch(walk.x, crossing.n_t * split.refracted, light, crossing.region, crossing.signs, generation);
-                let back = Branch(walk.x, crossing.n_i * split.reflected, light, walk.region, walk.signs, generation);
-                var lighter = through;
-                if (heavier_refracts) { lighter = back; }
-                if (!split.total) {
-                    if (largest(light) > volume.min_weight && waiting < STACK && generation <= volume.bounces) {
-                        stack[waiting] = lighter;
-                        waiting += 1u;
-                    } else {
-                        radiance += light * far_radiance(normalize(lighter.p));
-                    }
-                }
-                weight -= select(light, vec3f(0.0), split.total);
-                if (heavier_refracts) {
-                    pass_through(&walk, crossing, split.refracted);
-                } else {
-                    redirect(&walk, split.reflected, crossing.n_i);
-                }
-                if (generation > volume.bounces || largest(weight) <= volume.min_weight) {
-                    radiance += weight * far_radiance(normalize(walk.p0));
-                    done = true;
-                }
-            } else if (event == PAUSED) {
-                done = false;
-            } else if (event == OPAQUE) {
-                if (first < 0.0) { first = entry.distance + distance(entry.x, walk.x) * volume.scale; }
-                radiance += weight * opaque_radiance(walk.x, normalize(walk.p0 + walk.q));
+        let hit = mesh_between(from_x, walk.x);
+        let blocked = hit.valid && !straight_out;
+        let untouched = first < 0.0 && (blocked || event == LEFT || event == EXHAUSTED);
+        if (untouched) { return Seen(vec3f(0.0), 0.0, false); }
+        first = select(first, entry.distance + distance(entry.x, walk.x) * volume.scale, first < 0.0);
+
+        // The piece up to a mesh was homogeneous, or short: it keeps its share of the exponent.
+        let part = select(1.0, hit.t / max(distance(from_x, walk.x) * volume.scale, 1e-20), blocked);
+        radiance += weight * walk.emitted * part;
+        weight *= pow(max(walk.transmittance, vec3f(1e-30)), vec3f(part));
+
+        var ending = Ending(LOOK_ALONG, select(walk.x, from_x, straight_out || blocked), d, weight);
+        if (event == OPAQUE && !blocked) { ending = opaque_ending(walk.x, d, weight); }
+        let goes_on = !blocked && (event == INTERFACE || event == PAUSED);
+        if (goes_on) { ending.weight = vec3f(0.0); }
+        radiance += end_ray(ending);
+
+        if (goes_on && event == INTERFACE) {
+            generation += 1u;
+            let split = split_at(crossing);
+            let refracts = split.reflectance < 0.5;
+            let back = Branch(walk.x, crossing.n_i * split.reflected, weight * split.reflectance, walk.region, walk.signs, generation);
+            let through = Branch(
+                walk.x, crossing.n_t * split.refracted, weight * (1.0 - split.reflectance), crossing.region, crossing.signs, generation);
+            // The heavier branch goes on; the lighter waits, or ends in the environment.
+            var heavier = back;
+            var lighter = through;
+            if (refracts) { heavier = through; lighter = back; }
+            let within = generation <= volume.bounces;
+            if (within && largest(lighter.weight) > volume.min_weight && waiting < STACK) {
+                stack[waiting] = lighter;
+                waiting += 1u;
             } else {
-                if (first < 0.0) { return Seen(vec3f(0.0), 0.0, false); }
-                radiance += weight * outside_radiance(select(walk.x, from_x, straight_out), normalize(walk.p0 + walk.q));
+                radiance += lighter.weight * far_radiance(normalize(lighter.p));
+            }
+            follow(&walk, heavier);
+            weight = heavier.weight;
+            if (!within || largest(weight) <= volume.min_weight) {
+                radiance += weight * far_radiance(normalize(walk.p0));
+                weight = vec3f(0.0);
             }
         }
-        if (done) {
-            if (waiting == 0u) { break; }
-            waiting -= 1u;
-            let next = stack[waiting];
-            walk.x = next.x;
-            walk.p0 = next.p;
-            walk.q = vec3f(0.0);
-            walk.bend = 0.0;
-            walk.radius = 0.0;
-            walk.region = next.region;
-            walk.signs = next.signs;
-            weight = next.weight;
-            generation = next.generation;
+        if (!goes_on || largest(weight) <= 0.0) {
+            going = waiting > 0u;
+            if (going) {
+                waiting -= 1u;
+                let next = stack[waiting];
+                follow(&walk, next);
+                weight = next.weight;
+                generation = next.generation;
+            }
         }
     }
     return Seen(radiance, first, true);
 }
 
-fn largest(v: vec3f) -> f32 {
-    return max(v.x, max(v.y, v.z));
+fn follow(walk: ptr<function, Walk>, branch: Branch) {
+    redirect(walk, branch.p, 1.0);
+    (*walk).x = branch.x;
+    (*walk).region = branch.region;
+    (*walk).signs = branch.signs;
 }

@@ -8,7 +8,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
     let pixel = pixel_of(group.xy, lane);
     if (any(pixel >= draw.size)) { return; }
     let ray = camera_ray(vec2f(draw.corner + pixel) + 0.5);
-    let entry = to_object(ray);
+    let entry = enter(pixel, ray);
     var seen = Seen(vec3f(0.0), 0.0, false);
     if (entry.meets) { seen = look_through(entry); }
     keep(pixel, ray, seen);
@@ -20,44 +20,39 @@ fn look_through(entry: ViewRay) -> Seen {
     var passage = Passage();
     var radiance = vec3f(0.0);
     var weight = vec3f(1.0);
-    var first = -1.0;        // distance to the first boundary
-    var changed = -1.0;      // distance to where the volume first does anything
+    var mirrored = Ending();  // at the first boundary; it is looked along like the ray that goes through
+    var first = -1.0;         // distance to the first boundary
+    var changed = -1.0;       // distance to where the volume first does anything
     var event = PAUSED;
-    while (event == PAUSED || event == INTERFACE) {
-        let from_x = walk.x;
+    var from_x = entry.x;
+    var blocked = false;
+    while ((event == PAUSED || event == INTERFACE) && largest(weight) > 1e-4 && !blocked) {
+        from_x = walk.x;
         event = march_smooth(&walk, &passage, &crossing);
-        let blocked = mesh_between(from_x, walk.x);
+        blocked = mesh_between(from_x, walk.x).valid;
         if (changed < 0.0 && has_changed(walk)) { changed = entry.distance + distance(entry.x, from_x) * volume.scale; }
         radiance += weight * walk.emitted;
         weight *= walk.transmittance;
         walk.emitted = vec3f(0.0);
         walk.transmittance = vec3f(1.0);
-        if (blocked.valid) {
-            radiance += weight * shade_hit(blocked, to_world(from_x), direction_to_world(walk.x - from_x));
-            weight = vec3f(0.0);
-            break;
+        let split = split_at(crossing);
+        let reflectance = select(0.0, split.reflectance, event == INTERFACE && !blocked);
+        if (reflectance > 0.0 && first < 0.0) {
+            first = entry.distance + distance(entry.x, passage.x_steepest) * volume.scale;
+            mirrored = Ending(LOOK_ALONG, passage.x_steepest, split.reflected, weight * reflectance);
+        } else {
+            radiance += weight * reflectance * far_radiance(split.reflected);
         }
-        if (event == INTERFACE) {
-            let split = split_at(crossing);
-            var mirrored = far_radiance(split.reflected);
-            if (first < 0.0) {
-                first = entry.distance + distance(entry.x, passage.x_steepest) * volume.scale;
-                mirrored = outside_radiance(passage.x_steepest, split.reflected);
-            }
-            radiance += weight * split.reflectance * mirrored;
-            weight *= 1.0 - split.reflectance;
-        }
-        if (max(weight.x, max(weight.y, weight.z)) < 1e-4) { break; }
+        weight *= 1.0 - reflectance;
     }
-    let d = normalize(walk.p0 + walk.q);
-    if (event == OPAQUE) {
-        radiance += weight * opaque_radiance(walk.x, d);
-    } else {
-        // A little back: a mesh may lie just where the ray leaves the box.
-        radiance += weight * outside_radiance(walk.x - 0.01 * volume.voxel * d, d);
-    }
+    let d = normalize(select(walk.p0 + walk.q, walk.x - from_x, blocked));
+    // A little back where it leaves the box: a mesh may lie just there.
+    var ending = Ending(LOOK_ALONG, select(walk.x - 0.01 * volume.voxel * d, from_x, blocked), d, weight);
+    if (event == OPAQUE && !blocked) { ending = opaque_ending(walk.x, d, weight); }
+    let touched = changed >= 0.0 || first >= 0.0 || event == OPAQUE;
+    if (touched) { radiance += end_ray(mirrored) + end_ray(ending); }
     let depth = select(select(entry.distance, changed, changed >= 0.0), first, first >= 0.0);
-    return Seen(radiance, depth, changed >= 0.0 || event == OPAQUE);
+    return Seen(radiance, depth, touched);
 }
 
 fn has_changed(walk: Walk) -> bool {

@@ -1,0 +1,28 @@
+// Adds to each pixel what its waiting rays have seen, and keeps the channel that this draw is for.
+
+//!struct DrawParams from techniques.eikonal.layouts
+
+@group(0) @binding(0) var<uniform> draw: DrawParams;
+@group(0) @binding(1) var<storage, read> drawn: array<vec4f>;
+@group(0) @binding(2) var<storage, read> look_values: array<vec4f>;
+@group(0) @binding(3) var<storage, read_write> picture: array<vec4f>;
+@group(0) @binding(4) var screen_color: texture_2d<f32>;
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let pixels = draw.size.x * draw.size.y;
+    let index = id.x;
+    if (index >= pixels) { return; }
+    var value = drawn[index];
+    let used = u32(look_values[index].w);
+    for (var k = 0u; k < used; k++) { value += vec4f(look_values[k * pixels + index].rgb, 0.0); }
+    // Another channel may show the volume where this one does not.
+    let at = draw.corner + vec2u(index % draw.size.x, index / draw.size.x);
+    if (value.w < 0.0) { value = vec4f(textureLoad(screen_color, at, 0).rgb, value.w); }
+    switch draw.channel {
+        case 0u: { picture[index] = vec4f(value.x, 0.0, 0.0, value.w); }
+        case 1u: { picture[index].y = value.y; picture[index].w = max(picture[index].w, value.w); }
+        case 2u: { picture[index].z = value.z; picture[index].w = max(picture[index].w, value.w); }
+        default: { picture[index] = value; }
+    }
+}
