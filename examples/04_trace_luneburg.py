@@ -17,7 +17,7 @@ def main(output: Path | None = None, size: tuple[int, int] | None = None, resolu
     rng = np.random.default_rng(1)
     r, turn = 0.9 * radius * np.sqrt(rng.random(400)), 2.0 * np.pi * rng.random(400)
     origins = np.column_stack([r * np.cos(turn), r * np.sin(turn), np.full(400, -0.2)])
-    rays = pl.trace(lens, origins, (0.0, 0.0, 1.0))
+    rays = pl.trace(lens, origins, np.array([0.0, 0.0, 1.0]))  # one direction for all
 
     focus = np.array([0.0, 0.0, radius])
     miss = np.linalg.norm(np.cross(focus - rays.position, rays.direction), axis=1)

@@ -11,9 +11,6 @@ from pellucid.gallery import PICTURES, Picture, stage
 from pellucid.gpu import Device
 from pellucid.renderer import Renderer
 
-#: Those that take more than ten seconds on two busy cores, mostly to put meshes on voxels.
-SLOW = {"glass-hare"}
-
 
 @pytest.fixture(scope="module")
 def renderer(device: Device) -> Renderer:
@@ -31,9 +28,7 @@ def test_words_say_what_there_is_to_see(picture: Picture) -> None:
     assert picture.title and picture.you_should_see.endswith(".") and 1 <= picture.samples <= 16
 
 
-@pytest.mark.parametrize(
-    "picture", [pytest.param(p, marks=pytest.mark.slow if p.name in SLOW else (), id=p.name) for p in PICTURES]
-)
+@pytest.mark.parametrize("picture", PICTURES, ids=lambda p: p.name)
 def test_a_picture_renders(picture: Picture, renderer: Renderer) -> None:
     frame = renderer.render(picture.build(), (64, 48))
     assert np.isfinite(frame.radiance).all()

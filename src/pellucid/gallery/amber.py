@@ -79,6 +79,6 @@ PICTURES = (
         "Ant in amber",
         "A honey-coloured pebble, darker where it is thick, with an ant inside that the curved surface magnifies.",
         insect_in_amber,
-        4,
+        3,
     ),
 )

@@ -110,7 +110,7 @@ PICTURES = (
         "Through the prism every edge between black and white has a coloured fringe: red and yellow on one side, "
         "blue and violet on the other.",
         dispersion_prism,
-        4,
+        3,
     ),
     Picture(
         "graded-lenses",

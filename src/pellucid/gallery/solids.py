@@ -105,7 +105,7 @@ PICTURES = (
         "Glass ball on a chessboard",
         "The ball shows the board and the painted balls upside down, and the sky below them; its rim mirrors the sky.",
         glass_sphere,
-        6,
+        4,
     ),
     Picture(
         "three-glass-cube",
@@ -124,7 +124,7 @@ PICTURES = (
     Picture(
         "glass-hare",
         "Animal from a mesh",
-        "A sitting animal of green glass: thick parts are greener, and sky and boards stand upside down in head and belly.",
+        "A sitting animal of glass, greener where it is thick; sky and boards stand upside down in its head and belly.",
         glass_hare,
         5,
     ),

@@ -60,7 +60,7 @@ PICTURES = (
         "Glass of red wine",
         "A stemmed glass with dark red wine; the bowl shows the room upside down, the stem and the foot glitter.",
         wine_glass,
-        6,
+        5,
     ),
     Picture(
         "brilliant",
