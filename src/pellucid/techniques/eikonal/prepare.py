@@ -18,7 +18,7 @@ from pellucid.optics.dispersion import LAMBDA_D_NM
 # below 3e-4, and graded lenses stay under it from 40 voxels of diameter on.
 SURFACE_JUMP = 0.05
 # A boundary event begins at this share of the steepest slope that its jump has after smoothing, and ends at the other.
-EVENT_ON, EVENT_OFF = 0.25, 0.05
+EVENT_ON, EVENT_OFF = 0.25, 0.02
 # Relative to its range a field may drift by this much within a cell and still count as constant there.
 CONSTANT_WITHIN = 1e-5
 

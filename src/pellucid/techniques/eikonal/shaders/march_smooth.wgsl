@@ -6,9 +6,13 @@
 // A passage through a steep part of the field, from where it begins to where it is over.
 struct Passage {
     inside: bool,
-    p_before: vec3f,     // momentum in the calm before
+    p_before: vec3f,     // momentum in the calm before: followed until the passage begins
     x_steepest: vec3f,
     steepest: f32,
+}
+
+fn begin_passage(walk: Walk) -> Passage {
+    return Passage(false, walk.p0, walk.x, 0.0);
 }
 
 // Go on until the ray leaves, meets something opaque, has passed a boundary, or has turned by `pause`.
@@ -20,7 +24,7 @@ fn march_smooth(walk: ptr<function, Walk>, passage: ptr<function, Passage>, cros
         let p = (*walk).p0 + (*walk).q;
         let room = room_ahead(walk, p);
         let step = take_step(walk, room);
-        over = note_passage(walk, passage, p);
+        over = note_passage(walk, passage);
         event = select(event, PAUSED, distance((*walk).p0 + (*walk).q, p_begin) > volume.pause);
         event = select(event, OPAQUE, step.opaque_at_probe);
         event = select(event, LEFT, room <= 1e-4 * volume.voxel);
@@ -40,12 +44,13 @@ fn room_ahead(walk: ptr<function, Walk>, p: vec3f) -> f32 {
 }
 
 // True when a boundary has just been passed.
-fn note_passage(walk: ptr<function, Walk>, passage: ptr<function, Passage>, p: vec3f) -> bool {
+fn note_passage(walk: ptr<function, Walk>, passage: ptr<function, Passage>) -> bool {
     let gradient = (*walk).bend * length((*walk).p0 + (*walk).q);
     let begins = !(*passage).inside && gradient > volume.boundary_on;
     let steeper = begins || ((*passage).inside && gradient > (*passage).steepest);
     let over = (*passage).inside && gradient < volume.boundary_off;
-    (*passage).p_before = select((*passage).p_before, p, begins);
+    let calm = !(*passage).inside && gradient < volume.boundary_off;
+    (*passage).p_before = select((*passage).p_before, (*walk).p0 + (*walk).q, calm);
     (*passage).x_steepest = select((*passage).x_steepest, (*walk).x, steeper);
     (*passage).steepest = select((*passage).steepest, gradient, steeper);
     (*passage).inside = ((*passage).inside || begins) && !over;

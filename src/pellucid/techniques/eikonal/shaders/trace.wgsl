@@ -36,7 +36,7 @@ fn follow(ray: ptr<function, TraceRay>, approach: f32) {
     var interfaces = 0u;
     if (SHARP) { enter_sharp(&walk); } else { redirect(&walk, (*ray).momentum, index_at(start)); }
     var crossing = Crossing();
-    var passage = Passage();
+    var passage = begin_passage(walk);
     while (event == PAUSED || event == INTERFACE) {
         if (SHARP) { event = march_sharp(&walk, &crossing); } else { event = march_smooth(&walk, &passage, &crossing); }
         if (event != INTERFACE) { continue; }

@@ -17,7 +17,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
 fn look_through(entry: ViewRay) -> Seen {
     var walk = begin_walk(entry.x, entry.d, index_at(entry.x));
     var crossing = Crossing();
-    var passage = Passage();
+    var passage = begin_passage(walk);
     var radiance = vec3f(0.0);
     var weight = vec3f(1.0);
     var mirrored = Ending();  // at the first boundary; it is looked along like the ray that goes through
