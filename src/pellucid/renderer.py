@@ -46,6 +46,11 @@ class Renderer:
         self._targets: Targets | None = None
         self._display: Any = None
 
+    @property
+    def nbytes(self) -> int:
+        """Bytes of GPU memory held by the surroundings and the techniques."""
+        return self.surroundings.nbytes + sum(t.nbytes for t in self._techniques.values())
+
     def render(
         self,
         scene: Scene,

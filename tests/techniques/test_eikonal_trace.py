@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-import oracles
 import pytest
 
+import oracles
 import pellucid as pl
 from pellucid.techniques.eikonal.trace import trace as trace_on
 
@@ -56,7 +56,9 @@ def test_ball_refracts_as_snell_says(trace, ball, boundary, median, worst):
     rays = trace(placed(ball, boundary), o, d)
     angle = np.linalg.norm(rays.direction - direction, axis=1)
     assert (rays.status == "left").all()
-    assert np.median(angle) < median and angle.max() < worst, f"median {np.median(angle):.2e}, worst {angle.max():.2e} rad"
+    assert np.median(angle) < median and angle.max() < worst, (
+        f"median {np.median(angle):.2e}, worst {angle.max():.2e} rad"
+    )
     if boundary == "sharp":
         offset = oracles.line_distance(rays.position, rays.direction, leave) / (BOX / 128)
         assert offset.max() < 0.02, f"off by {offset.max():.1e} voxels"
@@ -147,7 +149,9 @@ def test_luneburg_lens_focuses_on_its_rim(trace):
     rays = trace(lens, o, d)
     miss = np.linalg.norm(np.cross(RADIUS * d - rays.position, rays.direction), axis=1) / RADIUS
     # The rim is a kink of the index, which voxels of 1/51 radius round off.
-    assert np.median(miss) < 1e-3 and miss.max() < 6e-3, f"misses by {np.median(miss):.1e}, at most {miss.max():.1e} radii"
+    assert np.median(miss) < 1e-3 and miss.max() < 6e-3, (
+        f"misses by {np.median(miss):.1e}, at most {miss.max():.1e} radii"
+    )
 
 
 def test_maxwell_fish_eye_images_its_rim_to_the_antipode(trace):
@@ -218,7 +222,9 @@ def test_a_ray_turned_round_finds_its_way_back_to_second_order_in_the_voxel(trac
         out = trace(field, o, d, adaptive=False)
         back = trace(field, out.position, -out.direction, adaptive=False)
         error.append(np.linalg.norm(np.cross(o - back.position, back.direction), axis=1).max() / RADIUS)
-    assert error[1] < 2e-3 and error[0] / error[1] > 3.5, f"misses its start by {error[0]:.1e}, then {error[1]:.1e} radii"
+    assert error[1] < 2e-3 and error[0] / error[1] > 3.5, (
+        f"misses its start by {error[0]:.1e}, then {error[1]:.1e} radii"
+    )
 
 
 @pytest.mark.parametrize(("method", "order", "slack"), [("leapfrog", 2.0, 0.3), ("euler", 1.0, 0.2)])

@@ -38,5 +38,5 @@ def gaussian(field: npt.ArrayLike, sigma_voxels: float) -> npt.NDArray[np.float3
     if sigma_voxels == 0.0:
         return np.array(values, dtype=np.float32)
     sigma = (sigma_voxels,) * 3 + (0.0,) * (values.ndim - 3)
-    blurred = gaussian_filter(values.astype(np.float64), sigma, mode="nearest")
+    blurred = gaussian_filter(values.astype(np.float64), sigma, mode="nearest", truncate=3.0)
     return blurred.astype(np.float32)

@@ -23,7 +23,10 @@ VolumeParams = struct(
         ("boundary_on", "f32"),  # |grad n| that begins a boundary event, 1/m
         ("boundary_off", "f32"),  # |grad n| that ends it
         ("min_weight", "f32"),  # lighter branches end in the environment
-        ("pause", "f32"),  # change of momentum after which the march hands back, so that the caller may look along the chord
+        (
+            "pause",
+            "f32",
+        ),  # change of momentum after which the march hands back, so that the caller may look along the chord
         ("max_steps", "u32"),
         ("bounces", "u32"),
         ("region_count", "u32"),  # 0: the box itself is the surface

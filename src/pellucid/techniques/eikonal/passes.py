@@ -166,7 +166,9 @@ class EikonalTechnique:
             march = self._march_kernel(item, resident)
             march.run(blocks, {**shared, **volume}, encoder, timer, "eikonal march")
             waiting = (self._lists["look_queue"], 0)
-            self._look_kernel(item).run((0, 0, 0), shared, encoder, timer, "eikonal look", indirect=waiting)
+            self._look_kernel(item, surroundings.triangle_count > 0).run(
+                (0, 0, 0), shared, encoder, timer, "eikonal look", indirect=waiting
+            )
             self._sum.run((-(-width * height // 64), 1, 1), shared, encoder, timer, "eikonal sum")
         self._composite.run(
             encoder,
@@ -186,8 +188,9 @@ class EikonalTechnique:
         name = "view_sharp" if prepared.sharp else "view_smooth"
         return self._kernel(name, constants)
 
-    def _look_kernel(self, item: RefractiveVolume) -> ComputeKernel:
-        return self._kernel("look", {"SCREEN_SPACE": float(item.surroundings == "screen")})
+    def _look_kernel(self, item: RefractiveVolume, has_meshes: bool) -> ComputeKernel:
+        by_screen = item.surroundings == "screen"
+        return self._kernel("look", {"SCREEN_SPACE": float(by_screen), "HAS_MESHES": float(has_meshes)})
 
     def _kernel(self, name: str, constants: dict[str, float]) -> ComputeKernel:
         key = (name, *constants.items())

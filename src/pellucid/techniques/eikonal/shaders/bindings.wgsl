@@ -8,6 +8,8 @@ override ABSORBS: bool = true;
 override EMITS: bool = true;
 override BLOCKS: bool = true;      // has opaque voxels
 
+override MEETS_MESHES: bool = false;   // opaque meshes reach into the box
+
 @group(0) @binding(0) var<uniform> volume: VolumeParams;
 @group(0) @binding(1) var volume_sampler: sampler;
 // xyz: grad(n^2)/2 (leapfrog) or grad n (Euler), scaled; w: radius around here, in voxels, in which every field is constant

@@ -6,6 +6,7 @@
 //!struct LookRay from techniques.eikonal.layouts
 //!struct LookCount from techniques.eikonal.layouts
 
+override HAS_MESHES: bool = true;
 override SCREEN_SPACE: bool = false;   // see nearby geometry in the picture drawn so far instead of by rays
 
 @group(0) @binding(0) var<storage, read> look_queue: LookCount;
@@ -21,8 +22,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         seen = surface_irradiance(ray.origin, ray.direction);
     } else if (SCREEN_SPACE) {
         seen = screen_radiance(ray.origin, ray.direction);
-    } else {
+    } else if (HAS_MESHES) {
         seen = radiance_along(ray.origin, ray.direction);
+    } else {
+        seen = environment_radiance(ray.direction);
     }
     let value = look_values[ray.slot];
     look_values[ray.slot] = vec4f(value.rgb * seen, value.w);

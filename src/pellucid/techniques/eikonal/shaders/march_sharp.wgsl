@@ -132,7 +132,7 @@ fn march_graded(walk: ptr<function, Walk>, crossing: ptr<function, Crossing>) ->
             (*walk).signs = flipped;
             stride = FIRST_STRIDE * volume.voxel;
         }
-        if (distance((*walk).p0 + (*walk).q, p_begin) > volume.pause) { return PAUSED; }
+        if (MEETS_MESHES && distance((*walk).p0 + (*walk).q, p_begin) > volume.pause) { return PAUSED; }
     }
     return EXHAUSTED;
 }

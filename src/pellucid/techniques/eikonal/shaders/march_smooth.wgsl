@@ -8,7 +8,7 @@ struct Passage {
     inside: bool,
     p_before: vec3f,     // momentum in the calm before: followed until the passage begins
     x_steepest: vec3f,
-    steepest: f32,
+    steepest2: f32,
 }
 
 fn begin_passage(walk: Walk) -> Passage {
@@ -21,12 +21,18 @@ fn march_smooth(walk: ptr<function, Walk>, passage: ptr<function, Passage>, cros
     var event = EXHAUSTED;
     var over = false;
     while (event == EXHAUSTED && !over && (*walk).steps < volume.max_steps) {
-        let p = (*walk).p0 + (*walk).q;
-        let room = room_ahead(walk, p);
-        let step = take_step(walk, room);
+        // Near a face of the box a step is cut to where the ray leaves it; this needs divisions that the others are spared.
+        let room = intersect_box((*walk).x, normalize((*walk).p0 + (*walk).q), volume.proxy_half).y;
+        var blocked = take_step(walk, room).opaque_at_probe;
         over = note_passage(walk, passage);
-        event = select(event, PAUSED, distance((*walk).p0 + (*walk).q, p_begin) > volume.pause);
-        event = select(event, OPAQUE, step.opaque_at_probe);
+        var turned = has_turned(walk, p_begin);
+        while (!blocked && !over && !turned && is_clear_of_faces(walk) && (*walk).steps < volume.max_steps) {
+            blocked = take_step(walk, NO_LIMIT).opaque_at_probe;
+            over = note_passage(walk, passage);
+            turned = has_turned(walk, p_begin);
+        }
+        event = select(event, PAUSED, turned);
+        event = select(event, OPAQUE, blocked);
         event = select(event, LEFT, room <= 1e-4 * volume.voxel);
     }
     // What a boundary does is worked out here, once, and not in the loop.
@@ -35,24 +41,27 @@ fn march_smooth(walk: ptr<function, Walk>, passage: ptr<function, Passage>, cros
     return select(event, PAUSED, over && event == EXHAUSTED);
 }
 
-// Distance to where the ray leaves the box: the distance to the nearest face is enough to know that a step stays inside.
-fn room_ahead(walk: ptr<function, Walk>, p: vec3f) -> f32 {
+fn is_clear_of_faces(walk: ptr<function, Walk>) -> bool {
     let inside = volume.proxy_half - abs((*walk).x);
-    let nearest = min(inside.x, min(inside.y, inside.z));
-    let exact = intersect_box((*walk).x, normalize(p), volume.proxy_half).y;
-    return select(exact, nearest, nearest > max(volume.step, (*walk).radius));
+    return min(inside.x, min(inside.y, inside.z)) > max(volume.step, (*walk).radius);
+}
+
+fn has_turned(walk: ptr<function, Walk>, p_begin: vec3f) -> bool {
+    if (!MEETS_MESHES) { return false; }
+    return distance((*walk).p0 + (*walk).q, p_begin) > volume.pause;
 }
 
 // True when a boundary has just been passed.
 fn note_passage(walk: ptr<function, Walk>, passage: ptr<function, Passage>) -> bool {
-    let gradient = (*walk).bend * length((*walk).p0 + (*walk).q);
-    let begins = !(*passage).inside && gradient > volume.boundary_on;
-    let steeper = begins || ((*passage).inside && gradient > (*passage).steepest);
-    let over = (*passage).inside && gradient < volume.boundary_off;
-    let calm = !(*passage).inside && gradient < volume.boundary_off;
+    let slope2 = (*walk).slope2;
+    let begins = !(*passage).inside && slope2 > volume.boundary_on * volume.boundary_on;
+    let steeper = begins || ((*passage).inside && slope2 > (*passage).steepest2);
+    let flat = slope2 < volume.boundary_off * volume.boundary_off;
+    let over = (*passage).inside && flat;
+    let calm = !(*passage).inside && flat;
     (*passage).p_before = select((*passage).p_before, (*walk).p0 + (*walk).q, calm);
     (*passage).x_steepest = select((*passage).x_steepest, (*walk).x, steeper);
-    (*passage).steepest = select((*passage).steepest, gradient, steeper);
+    (*passage).steepest2 = select((*passage).steepest2, slope2, steeper);
     (*passage).inside = ((*passage).inside || begins) && !over;
     return over;
 }

@@ -9,8 +9,6 @@
 //!import techniques/eikonal/shaders/bindings
 //!import techniques/eikonal/shaders/fields
 
-override MEETS_MESHES: bool = false;   // opaque meshes reach into the box
-
 struct Seen {
     radiance: vec3f,
     distance: f32,      // along the viewing ray to the first surface, world metres

@@ -16,7 +16,7 @@ struct Walk {
     emitted: vec3f,       // radiance picked up, seen from where the walk began
     steps: u32,
     radius: f32,          // object metres around x in which nothing changes
-    bend: f32,            // |grad n| / n met last, 1/m
+    slope2: f32,          // |grad n|^2 met last, 1/m^2
     region: u32,          // owner of x in a sharp volume; region_count outside all of them
     signs: u32,           // bit k: x is inside region k
 }
@@ -39,6 +39,6 @@ fn begin_walk(x: vec3f, d: vec3f, n: f32) -> Walk {
 fn redirect(walk: ptr<function, Walk>, d: vec3f, n: f32) {
     (*walk).p0 = n * d;
     (*walk).q = vec3f(0.0);
-    (*walk).bend = 0.0;
+    (*walk).slope2 = 0.0;
     (*walk).radius = 0.0;
 }

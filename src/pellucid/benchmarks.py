@@ -1,0 +1,135 @@
+"""Timings that the README quotes and anyone can print again; never asserted by a test.
+
+Every suite renders its variants in turn, several rounds after a warm-up, and states medians and ratios of one run.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+Progress = Callable[[float], None]
+SIZE = (800, 600)
+RESOLUTION = 128
+
+
+def eikonal(progress: Progress = lambda share: None, repeat: int = 5) -> dict[str, Any]:
+    """The view renderer: a glass ball of 128^3 voxels that covers half of an 800x600 picture, under a studio sky.
+
+    The error of a row is the mean absolute difference of radiance from a picture with steps 16 times finer than the base's,
+    as a share of the mean radiance, both over the pixels that the ball covers.
+    """
+    from pellucid.renderer import Renderer
+    from pellucid.scene import Quality
+
+    renderer = Renderer()
+    fixed = {"adaptive": False, "max_steps": 20000}
+    variants = {
+        "euler_half_voxel": ("smooth", Quality(method="euler", step_voxels=0.5, **fixed), "fixed steps, first order"),
+        "leapfrog_half_voxel": ("smooth", Quality(step_voxels=0.5, **fixed), "fixed steps, second order"),
+        "adaptive": ("smooth", Quality(step_voxels=1.5), "jumps through homogeneous matter, steps up to 1.5 voxels"),
+        "adaptive_default": ("smooth", Quality(), "the same, steps up to half a voxel"),
+        "sharp": ("sharp", Quality(), "surfaces by sphere tracing, a tree of rays; has no error of steps"),
+    }
+    glass_ball = _ball_scene()
+    scenes = {name: glass_ball(boundary, quality) for name, (boundary, quality, _) in variants.items()}
+    reference = renderer.render(glass_ball("smooth", Quality(step_voxels=0.5 / 16, **fixed)), SIZE).radiance
+    covered = _covered(renderer, scenes["adaptive"])
+    pictures = {name: renderer.render(scene, SIZE).radiance for name, scene in scenes.items()}  # the warm-up
+    times: dict[str, list[float]] = {name: [] for name in scenes}
+    for turn in range(repeat):
+        for number, (name, scene) in enumerate(scenes.items()):
+            timings = renderer.render(scene, SIZE).timings
+            times[name].append(sum(ms for label, ms in timings.items() if label.startswith("eikonal")))
+            progress((turn + (number + 1) / len(scenes)) / (repeat + 1))
+    memory = renderer.nbytes / 2**20
+    rows = []
+    for name, (boundary, _, note) in variants.items():
+        error = None if boundary == "sharp" else _difference(pictures[name], reference, covered)
+        rows.append(_row(name, times[name], times["euler_half_voxel"], error, note))
+    rows[-1]["note"] += f"; {memory:.0f} MiB on the device"
+    rows += _preparation_rows()
+    progress(1.0)
+    return {"device": _device(renderer), "suite": "eikonal", "rows": rows}
+
+
+def _ball_scene() -> Callable[[str, Any], Any]:
+    """Scenes of one and the same ball by boundary and quality."""
+    from pellucid.fields.shapes import sphere
+    from pellucid.fields.volume import Volume
+    from pellucid.scene import Camera, Environment, RefractiveVolume, Scene
+
+    volume = Volume.from_sdf(sphere(0.045), 1.5, RESOLUTION, 0.1)
+    environment = Environment.studio()
+    camera = Camera(position=(0.03, 0.06, 0.2), target=(0.0, 0.0, 0.0), fov_deg=32.0)
+
+    def scene(boundary: str, quality: Any) -> Any:
+        ball = RefractiveVolume(volume, boundary=boundary, quality=quality)
+        return Scene(camera=camera, environment=environment, objects=[ball], tone_mapping="linear")
+
+    return scene
+
+
+def _covered(renderer: Any, scene: Any) -> np.ndarray:
+    """Where the ball is: the pixels that differ from the picture without it."""
+    bare = renderer.render(scene.replace(objects=[]), SIZE).radiance
+    return np.abs(renderer.render(scene, SIZE).radiance - bare).max(axis=2) > 1e-6
+
+
+def _difference(picture: np.ndarray, reference: np.ndarray, where: np.ndarray) -> float:
+    return float(np.abs(picture - reference)[where].mean() / reference[where].mean())
+
+
+def _preparation_rows() -> list[dict[str, Any]]:
+    """From triangles to what the GPU is given, at 128 voxels along the longest edge."""
+    from pellucid.fields.shapes import creature_mesh
+
+    rows = [_prepare_row("prepare_creature", *creature_mesh(0.1))]
+    bunny = Path(os.environ.get("PELLUCID_SHARED_DATA", "../shared/data")) / "bunny.ply"
+    if bunny.is_file():
+        from pellucid.io.meshes import read_mesh
+
+        mesh = read_mesh(bunny)
+        rows.append(_prepare_row("prepare_bunny", mesh.vertices, mesh.faces))
+    return rows
+
+
+def _prepare_row(name: str, vertices: np.ndarray, faces: np.ndarray) -> dict[str, Any]:
+    from pellucid.fields.volume import Volume
+    from pellucid.techniques.eikonal.prepare import prepare
+
+    begun = time.perf_counter()
+    volume, _ = Volume.from_mesh(vertices, faces, 1.5, RESOLUTION)
+    voxelised = time.perf_counter()
+    prepare(volume, "sharp")
+    prepare(volume, "smooth")
+    done = time.perf_counter()
+    shape = " x ".join(str(n) for n in volume.shape[::-1])
+    note = f"{len(faces)} faces to {shape} voxels in {voxelised - begun:.2f} s, fields of both boundaries {done - voxelised:.2f} s"
+    return _row(name, [1e3 * (done - begun)], None, None, note)
+
+
+def _row(name: str, times: list[float], base: list[float] | None, error: float | None, note: str) -> dict[str, Any]:
+    median = float(np.median(times))
+    return {
+        "name": name,
+        "ms": round(median, 2),
+        "min_ms": round(min(times), 2),
+        "max_ms": round(max(times), 2),
+        "ratio": None if base is None else round(median / float(np.median(base)), 4),
+        "error": None if error is None else float(f"{error:.4g}"),
+        "note": note,
+    }
+
+
+def _device(renderer: Any) -> dict[str, Any]:
+    device = renderer.device
+    return {"name": device.name, "software": device.is_software, "cpus": os.cpu_count()}
+
+
+SUITES: dict[str, Callable[..., dict[str, Any]]] = {"eikonal": eikonal}
