@@ -21,24 +21,24 @@ RESOLUTION = 128
 def eikonal(progress: Progress = lambda share: None, repeat: int = 5) -> dict[str, Any]:
     """The view renderer: a glass ball of 128^3 voxels that covers half of an 800x600 picture, under a studio sky.
 
-    The error of a row is the mean absolute difference of radiance from a picture with steps 16 times finer than the base's,
-    as a share of the mean radiance, both over the pixels that the ball covers.
+    The error of a row is the mean absolute difference of radiance from a picture with steps 16 times finer than the
+    base's, as a share of the mean radiance, both over the pixels that the ball covers.
     """
     from pellucid.renderer import Renderer
     from pellucid.scene import Quality
 
     renderer = Renderer()
-    fixed = {"adaptive": False, "max_steps": 20000}
+    fixed = Quality(step_voxels=0.5, adaptive=False, max_steps=20000)
     variants = {
-        "euler_half_voxel": ("smooth", Quality(method="euler", step_voxels=0.5, **fixed), "fixed steps, first order"),
-        "leapfrog_half_voxel": ("smooth", Quality(step_voxels=0.5, **fixed), "fixed steps, second order"),
+        "euler_half_voxel": ("smooth", fixed.replace(method="euler"), "fixed steps, first order"),
+        "leapfrog_half_voxel": ("smooth", fixed, "fixed steps, second order"),
         "adaptive": ("smooth", Quality(step_voxels=1.5), "jumps through homogeneous matter, steps up to 1.5 voxels"),
         "adaptive_default": ("smooth", Quality(), "the same, steps up to half a voxel"),
         "sharp": ("sharp", Quality(), "surfaces by sphere tracing, a tree of rays; has no error of steps"),
     }
     glass_ball = _ball_scene()
     scenes = {name: glass_ball(boundary, quality) for name, (boundary, quality, _) in variants.items()}
-    reference = renderer.render(glass_ball("smooth", Quality(step_voxels=0.5 / 16, **fixed)), SIZE).radiance
+    reference = renderer.render(glass_ball("smooth", fixed.replace(step_voxels=0.5 / 16)), SIZE).radiance
     covered = _covered(renderer, scenes["adaptive"])
     pictures = {name: renderer.render(scene, SIZE).radiance for name, scene in scenes.items()}  # the warm-up
     times: dict[str, list[float]] = {name: [] for name in scenes}
@@ -110,7 +110,8 @@ def _prepare_row(name: str, vertices: np.ndarray, faces: np.ndarray) -> dict[str
     prepare(volume, "smooth")
     done = time.perf_counter()
     shape = " x ".join(str(n) for n in volume.shape[::-1])
-    note = f"{len(faces)} faces to {shape} voxels in {voxelised - begun:.2f} s, fields of both boundaries {done - voxelised:.2f} s"
+    seconds = f"{voxelised - begun:.2f} s, fields of both boundaries {done - voxelised:.2f} s"
+    note = f"{len(faces)} faces to {shape} voxels in {seconds}"
     return _row(name, [1e3 * (done - begun)], None, None, note)
 
 

@@ -186,8 +186,5 @@ def _metres(depth: np.ndarray, camera: Camera) -> np.ndarray:
     """Depth-buffer values to metres along the view axis: near/z for perspective, linear for orthographic."""
     near, far = camera.near_m, camera.far_m
     with np.errstate(divide="ignore"):
-        if camera.orthographic_height_m is not None:
-            metres = far - depth * (far - near)
-        else:
-            metres = near / depth
+        metres = far - depth * (far - near) if camera.is_orthographic else near / depth
     return np.where(depth > 0.0, metres, np.inf).astype(np.float32)

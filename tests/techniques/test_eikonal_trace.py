@@ -47,8 +47,8 @@ def placed(volume: pl.Volume, boundary: str, **options) -> pl.RefractiveVolume:
 # ---- constant index: Snell, Fresnel -------------------------------------------------------------------------
 
 
-# Smooth boundaries are Gaussians of 0.8 voxels: a curved one refracts at a radius that differs by about half its square over the
-# radius, and its rays bend over a few voxels.
+# Smooth boundaries are Gaussians of 0.8 voxels: rays bend over a few voxels, and a curved boundary refracts them at a
+# radius that differs by about half the square of that over the radius.
 @pytest.mark.parametrize(("boundary", "median", "worst"), [("sharp", 6e-5, 3e-4), ("smooth", 6e-3, 5e-2)])
 def test_ball_refracts_as_snell_says(trace, ball, boundary, median, worst):
     o, d = beam(4000, 0.75)
@@ -78,7 +78,7 @@ def test_ball_lens_focal_length(trace, ball, boundary, deviation):
 
 @pytest.mark.parametrize(("boundary", "deviation"), [("sharp", 1e-5), ("smooth", 3e-3)])
 def test_slab_shifts_rays_in_parallel(trace, boundary, deviation):
-    """Smooth boundaries have a closed form too: in layers n sin is kept, and the shift is an integral over the profile."""
+    """Smooth boundaries have a closed form too: in layers n sin is kept, the shift is an integral over the profile."""
     thickness, theta = 0.03, np.radians([10.0, 30.0, 45.0, 60.0])
     slab = pl.Volume.from_sdf(lambda x, y, z: np.abs(z) - thickness / 2 + 0 * x, 1.5, 128, BOX)
     d = np.stack([np.sin(theta), 0 * theta, np.cos(theta)], axis=1)
@@ -214,7 +214,7 @@ def test_angular_momentum_is_kept_in_spherical_fields(trace):
 
 
 def test_a_ray_turned_round_finds_its_way_back_to_second_order_in_the_voxel(trace):
-    """The integrator is reversible; what is left is the |p| that a sampled force leaves wrong, and the way back starts with |p| = n."""
+    """The integrator is reversible; what is left is |p| - n of a sampled force: the way back starts with |p| = n."""
     o, d = beam(500, 0.8)
     error = []
     for resolution in (64, 128):

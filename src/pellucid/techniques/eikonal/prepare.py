@@ -14,8 +14,8 @@ from pellucid.fields.smoothing import gaussian
 from pellucid.fields.volume import Volume
 from pellucid.optics.dispersion import LAMBDA_D_NM
 
-# Smallest jump of the index between neighbours that is taken for a surface: what it would reflect at normal incidence is
-# below 3e-4, and graded lenses stay under it from 40 voxels of diameter on.
+# Smallest jump of the index between neighbours that is taken for a surface: what a smaller one would reflect at normal
+# incidence is below 3e-4, and graded lenses stay under it from 40 voxels of diameter on.
 SURFACE_JUMP = 0.05
 # A boundary event begins at this share of the steepest slope that its jump has after smoothing, and ends at the other.
 EVENT_ON, EVENT_OFF = 0.25, 0.02
@@ -27,7 +27,7 @@ CONSTANT_WITHIN = 1e-5
 class Channel:
     """The index field at one wavelength (or at all, without dispersion).
 
-    force : (Z, Y, X, 4) float32; grad(n^2)/2 in 1/m for leapfrog, grad n for Euler; then the homogeneous radius in voxels.
+    force : (Z, Y, X, 4); grad(n^2)/2 in 1/m for leapfrog, grad n for Euler; then the homogeneous radius, voxels.
     index : (Z, Y, X) float32, n - ambient_n; or None when nothing needs it.
     region_n : index of each region at this wavelength.
     """

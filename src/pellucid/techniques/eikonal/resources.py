@@ -14,10 +14,13 @@ from pellucid.techniques.eikonal.prepare import Prepared
 
 # The box of a volume whose box is its surface is entered from this far outside, voxels.
 BOX_MARGIN_VOXELS = 1.5
-# Between two looks at the opaque meshes that reach into a volume a curved ray turns by this much, as a change of its optical
-# momentum; the chord then departs from the arc by about 1 % of its length.
+# Between two looks at the opaque meshes that reach into a volume a curved ray turns by this much, as a change of its
+# optical momentum; the chord then departs from the arc by about 1 % of its length.
 PAUSE_TURN = 0.1
 FAR = 1e30
+MOST_HALF = (
+    65504.0  # the largest 16-bit float; an extinction of that many per metre is black in a tenth of a millimetre
+)
 # Rays that one pixel may send into the surroundings; more of them see the environment only.
 LOOKS_PER_PIXEL = 8
 
@@ -43,6 +46,8 @@ def upload(device: Device, prepared: Prepared) -> VolumeTextures:
             array = np.zeros((1, 1, 1, channels), np.float32)
         narrow = half or not device.float32_filterable
         name = {1: "r", 2: "rg", 4: "rgba"}[channels] + ("16float" if narrow else "32float")
+        if narrow:
+            array = np.clip(array, -MOST_HALF, MOST_HALF)
         data = _fit(array, channels).astype(np.float16 if narrow else np.float32)
         size += data.nbytes
         return device.texture(data, format=name, dimension="3d", label=label)

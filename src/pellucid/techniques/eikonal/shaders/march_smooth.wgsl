@@ -7,12 +7,13 @@
 struct Passage {
     inside: bool,
     p_before: vec3f,     // momentum in the calm before: followed until the passage begins
+    light_before: vec3f, // transmittance in the calm before: what a mirror image at the boundary is attenuated by
     x_steepest: vec3f,
     steepest2: f32,
 }
 
 fn begin_passage(walk: Walk) -> Passage {
-    return Passage(false, walk.p0, walk.x, 0.0);
+    return Passage(false, walk.p0, walk.transmittance, walk.x, 0.0);
 }
 
 // Go on until the ray leaves, meets something opaque, has passed a boundary, or has turned by `pause`.
@@ -60,6 +61,7 @@ fn note_passage(walk: ptr<function, Walk>, passage: ptr<function, Passage>) -> b
     let over = (*passage).inside && flat;
     let calm = !(*passage).inside && flat;
     (*passage).p_before = select((*passage).p_before, (*walk).p0 + (*walk).q, calm);
+    if (ABSORBS) { (*passage).light_before = select((*passage).light_before, (*walk).transmittance, calm); }
     (*passage).x_steepest = select((*passage).x_steepest, (*walk).x, steeper);
     (*passage).steepest2 = select((*passage).steepest2, slope2, steeper);
     (*passage).inside = ((*passage).inside || begins) && !over;

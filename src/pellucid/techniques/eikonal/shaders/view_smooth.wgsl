@@ -19,36 +19,35 @@ fn look_through(entry: ViewRay) -> Seen {
     var crossing = Crossing();
     var passage = begin_passage(walk);
     var radiance = vec3f(0.0);
-    var weight = vec3f(1.0);
     var mirrored = Ending();  // at the first boundary; it is looked along like the ray that goes through
     var first = -1.0;         // distance to the first boundary
     var changed = -1.0;       // distance to where the volume first does anything
     var event = PAUSED;
     var from_x = entry.x;
     var blocked = false;
-    while ((event == PAUSED || event == INTERFACE) && largest(weight) > 1e-4 && !blocked) {
+    while ((event == PAUSED || event == INTERFACE) && largest(walk.transmittance) > 1e-4 && !blocked) {
         from_x = walk.x;
         event = march_smooth(&walk, &passage, &crossing);
         blocked = mesh_between(from_x, walk.x).valid;
         if (changed < 0.0 && has_changed(walk)) { changed = entry.distance + distance(entry.x, from_x) * volume.scale; }
-        radiance += weight * walk.emitted;
-        weight *= walk.transmittance;
-        walk.emitted = vec3f(0.0);
-        walk.transmittance = vec3f(1.0);
         let split = split_at(crossing);
         let reflectance = select(0.0, split.reflectance, event == INTERFACE && !blocked);
+        // Without absorption what has been split off so far is all that dims the light.
+        let reflected = reflectance * select(walk.transmittance, passage.light_before, ABSORBS);
         if (reflectance > 0.0 && first < 0.0) {
             first = entry.distance + distance(entry.x, passage.x_steepest) * volume.scale;
-            mirrored = Ending(LOOK_ALONG, passage.x_steepest, split.reflected, weight * reflectance);
+            mirrored = Ending(LOOK_ALONG, passage.x_steepest, split.reflected, reflected);
         } else {
-            radiance += weight * reflectance * far_radiance(split.reflected);
+            radiance += reflected * far_radiance(split.reflected);
         }
-        weight *= 1.0 - reflectance;
+        walk.transmittance *= 1.0 - reflectance;
+        passage.light_before = walk.transmittance;
     }
+    radiance += walk.emitted;
     let d = normalize(select(walk.p0 + walk.q, walk.x - from_x, blocked));
     // A little back where it leaves the box: a mesh may lie just there.
-    var ending = Ending(LOOK_ALONG, select(walk.x - 0.01 * volume.voxel * d, from_x, blocked), d, weight);
-    if (event == OPAQUE && !blocked) { ending = opaque_ending(walk.x, d, weight); }
+    var ending = Ending(LOOK_ALONG, select(walk.x - 0.01 * volume.voxel * d, from_x, blocked), d, walk.transmittance);
+    if (event == OPAQUE && !blocked) { ending = opaque_ending(walk.x, d, walk.transmittance); }
     let touched = changed >= 0.0 || first >= 0.0 || event == OPAQUE;
     if (touched) { radiance += end_ray(mirrored) + end_ray(ending); }
     let depth = select(select(entry.distance, changed, changed >= 0.0), first, first >= 0.0);
