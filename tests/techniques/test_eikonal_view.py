@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-import oracles
 import pytest
 
+import oracles
 import pellucid as pl
 from pellucid.fields import shapes
 from pellucid.scene.placement import rotation_matrix
@@ -142,7 +142,7 @@ def test_refraction_of_nearby_geometry_is_where_snell_puts_it(renderer, boundary
     theta = np.arcsin(np.linalg.norm(o[inner, :2], axis=1) / radius)
     through = (1.0 - oracles.fresnel(np.maximum(theta, 1e-4), 1.0, n)) ** 2
     seen = frame.radiance.reshape(-1, 3)[inner]
-    # The pattern is linear in x and y, so the share of red tells where the ray arrived, once the reflection is taken off.
+    # The pattern is linear in x and y: red tells where the ray arrived, once the reflection is taken off.
     expected = hit[:, 0] / 0.4 + 0.5
     rest = 1.0 - through
     got = (seen[:, 0] - rest * 1.0) / through
