@@ -29,10 +29,18 @@ Rectangle = tuple[int, int, int, int]
 
 
 @dataclass
-class _Resident:
-    """A volume on the device. `source` keeps the identity alive that it is found by."""
+class _Loaded:
+    """A volume on the device, shared by the objects that place it. `source` keeps the identity that it is found by."""
 
     source: Any
+    prepared: Prepared
+    textures: VolumeTextures
+
+
+@dataclass
+class _Resident:
+    """One placed object: its volume and its own parameters."""
+
     prepared: Prepared
     textures: VolumeTextures
     uniforms: list[Any]
@@ -45,8 +53,9 @@ class EikonalTechnique:
 
     def __init__(self, device: Device) -> None:
         self.device = device
-        self._residents: dict[Any, _Resident] = {}
-        self._drawn: dict[int, tuple[_Resident, Any]] = {}
+        self._loaded: dict[Any, _Loaded] = {}
+        self._residents: list[_Resident] = []
+        self._drawn: dict[int, _Resident] = {}
         self._kernels: dict[Any, ComputeKernel] = {}
         self._no_looks = device.buffer(np.array([(0, 1, 1, 0)], LookCount), "storage", "no looks")
         self._lists: dict[str, Any] = {}
@@ -63,28 +72,35 @@ class EikonalTechnique:
     @property
     def nbytes(self) -> int:
         """Bytes of GPU memory held: volumes, and the lists of rays."""
-        return sum(r.textures.nbytes for r in self._residents.values()) + sum(b.size for b in self._lists.values())
+        return sum(v.textures.nbytes for v in self._loaded.values()) + sum(b.size for b in self._lists.values())
 
     def prepare(self, objects: Sequence[RefractiveVolume], surroundings: Surroundings) -> None:
         """Make every volume resident, drop those that are gone, and write the parameters of each object."""
-        wanted = {_key(o, n): o for n, o in enumerate(objects)}
-        for key in [k for k in self._residents if k not in wanted]:
-            del self._residents[key]
-        self._drawn = {}
-        for key, item in wanted.items():
-            if key not in self._residents:
-                self._residents[key] = self._load(item)
-            resident = self._residents[key]
+        wanted = {_key(item) for item in objects}
+        self._loaded = {key: volume for key, volume in self._loaded.items() if key in wanted}
+        residents = []
+        for number, item in enumerate(objects):
+            key = _key(item)
+            if key not in self._loaded:
+                self._loaded[key] = self._load(item)
+            before = self._residents[number] if number < len(self._residents) else None
+            same = before is not None and before.textures is self._loaded[key].textures
+            resident = before if before is not None and same else self._place(self._loaded[key])
             self._write_parameters(item, resident, surroundings)
-            self._drawn[id(item)] = (resident, item)
+            residents.append(resident)
+        self._residents = residents
+        self._drawn = {id(item): resident for item, resident in zip(objects, residents, strict=True)}
 
-    def _load(self, item: RefractiveVolume) -> _Resident:
+    def _load(self, item: RefractiveVolume) -> _Loaded:
         prepared = prepare(
             item.volume, item.boundary, item.smoothing_voxels, item.gradient, item.quality.method, item.dispersion
         )
-        textures = upload(self.device, prepared)
-        uniforms = [self.device.buffer(VolumeParams.itemsize, "uniform", "volume") for _ in prepared.channels]
-        return _Resident(item.volume, prepared, textures, uniforms, [])
+        return _Loaded(item.volume, prepared, upload(self.device, prepared))
+
+    def _place(self, volume: _Loaded) -> _Resident:
+        count = len(volume.prepared.channels)
+        uniforms = [self.device.buffer(VolumeParams.itemsize, "uniform", "volume") for _ in range(count)]
+        return _Resident(volume.prepared, volume.textures, uniforms, [])
 
     def _write_parameters(self, item: RefractiveVolume, resident: _Resident, surroundings: Surroundings) -> None:
         world = item.object_to_world()
@@ -109,11 +125,11 @@ class EikonalTechnique:
         timer: Any = None,
     ) -> None:
         """Encode the draws of one volume over what is in the targets."""
-        resident, _ = self._drawn[id(item)]
-        scissor = _screen_rectangle(resident.prepared, item, camera, targets.size)
-        if scissor is None:
+        resident = self._drawn[id(item)]
+        covered = _screen_rectangle(resident.prepared, item, camera, targets.size)
+        if covered is None:
             return
-        bands = _bands(scissor)
+        bands = _bands(covered)
         self._reserve(max(width * height for _, _, width, height in bands))
         while len(resident.draws) < len(bands):
             four = range(EVERY_CHANNEL + 1)
@@ -147,7 +163,7 @@ class EikonalTechnique:
         timer: Any,
     ) -> None:
         """March, look, sum, for each channel; then put the band into the picture."""
-        x, y, width, height = band
+        width, height = band[2:]
         count = len(resident.uniforms)
         # Red goes first and starts each pixel anew; without dispersion one draw serves every channel.
         for channel in (0, 1, 2) if count == 3 else (EVERY_CHANNEL,):
@@ -175,7 +191,7 @@ class EikonalTechnique:
             color=[targets.color_view],
             depth=targets.depth_view,
             bindings={"draw": draws[channel], "picture": self._lists["picture"]},
-            scissor=(x, y, width, height),
+            scissor=band,
             timer=timer,
             label="eikonal composite",
         )
@@ -213,11 +229,9 @@ def _bands(rectangle: Rectangle) -> list[Rectangle]:
     return [(x, y + at, width, min(rows, height - at)) for at in range(0, height, rows)]
 
 
-def _key(item: RefractiveVolume, number: int) -> Any:
-    return (
-        *(number, id(item.volume), item.boundary, item.smoothing_voxels, item.gradient),
-        *(item.quality.method, item.dispersion),
-    )
+def _key(item: RefractiveVolume) -> Any:
+    """What decides how a volume is prepared; two objects that agree in it share their textures."""
+    return (id(item.volume), item.boundary, item.smoothing_voxels, item.gradient, item.quality.method, item.dispersion)
 
 
 def _corners(prepared: Prepared) -> np.ndarray:
