@@ -114,6 +114,16 @@ def test_total_reflection_begins_at_the_critical_angle(trace):
     assert rays.direction[1, 2] < 0.0, "41.83 degrees inside glass of 1.5 must reflect totally"
 
 
+def test_a_body_that_fills_its_box_ends_at_the_faces_of_the_box(trace):
+    block = pl.Volume.from_sdf(
+        lambda x, y, z: -1.0 + 0 * x, pl.media.constant(1.5, (7.0, 7.0, 7.0), name="grey"), 48, BOX
+    )
+    rays = trace(placed(block, "sharp"), [0.01, 0.02, -1.0], [0, 0, 1])
+    truth = 0.96**2 * np.exp(-7.0 * BOX)
+    assert abs(rays.transmittance[0, 0] - truth) < 1e-5
+    assert abs(rays.optical_path[0] - (rays.position[0, 2] + 1.0 + 0.5 * BOX)) < 1e-5
+
+
 def test_a_prism_spreads_colours_by_its_sellmeier_curve(trace, device):
     apex, theta = np.radians(40.0), np.radians(45.0)
     half = apex / 2

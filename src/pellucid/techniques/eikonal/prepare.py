@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,6 +21,8 @@ SURFACE_JUMP = 0.05
 EVENT_ON, EVENT_OFF = 0.25, 0.02
 # Relative to its range a field may drift by this much within a cell and still count as constant there.
 CONSTANT_WITHIN = 1e-5
+# Voxels that are added around a body which its box cuts off, so that its distance is known on both sides of the cut.
+BOX_PAD = 3
 
 
 @dataclass(frozen=True)
@@ -96,6 +98,7 @@ def prepare(
 
 
 def _prepare_sharp(volume: Volume, gradient: str, method: str, dispersion: bool) -> Prepared:
+    volume = _closed_at_box(volume)
     regions = volume.regions
     graded = volume.delta_n is not None
     spread = dispersion and volume.is_dispersive
@@ -160,6 +163,41 @@ def _prepare_smooth(volume: Volume, smoothing: float, gradient: str, method: str
         region_emission=(),
         boundary_on_per_m=float(EVENT_ON * steepest),
         boundary_off_per_m=float(EVENT_OFF * steepest) if jump else 0.0,
+    )
+
+
+def _closed_at_box(volume: Volume) -> Volume:
+    """Where a body reaches the faces of its box, these are its surface: add a margin outside and cut it off there."""
+    borders = [np.take(r.sdf, (0, -1), axis=a).min() for r in volume.regions for a in range(3)]
+    if not borders or min(borders) >= 0.0:
+        return volume
+    z, y, x = np.meshgrid(
+        *(
+            np.abs((np.arange(-BOX_PAD, n + BOX_PAD) + 0.5) * h - 0.5 * n * h) - 0.5 * n * h
+            for n, h in zip(volume.shape, volume.voxel_m[::-1], strict=True)
+        ),
+        indexing="ij",
+        sparse=True,
+    )
+    outside_box = np.maximum(np.maximum(x, y), z)
+
+    def extended(field: np.ndarray | None) -> np.ndarray | None:
+        if field is None:
+            return None
+        return np.pad(field, [(BOX_PAD, BOX_PAD)] * 3 + [(0, 0)] * (field.ndim - 3), mode="edge")
+
+    regions = []
+    for region in volume.regions:
+        distance = np.pad(region.sdf, BOX_PAD, mode="edge")
+        regions.append(replace(region, sdf=np.maximum(distance, outside_box).astype(np.float32)))
+    fields = ("delta_n", "absorption", "scattering", "anisotropy", "emission")
+    margin = np.array(volume.voxel_m) * 2 * BOX_PAD
+    opaque = None if volume.opaque is None else np.pad(volume.opaque, [(BOX_PAD, BOX_PAD)] * 3 + [(0, 0)])
+    return volume.replace(
+        extent_m=tuple(np.array(volume.extent_m) + margin),
+        regions=tuple(regions),
+        opaque=opaque,
+        **{name: extended(getattr(volume, name)) for name in fields},
     )
 
 
