@@ -55,8 +55,8 @@ class Renderer:
         self,
         scene: Scene,
         size: tuple[int, int] = (800, 600),
-        samples: int = 1,
         time: float = 0.0,
+        samples: int = 1,
         progress: Callable[[float], None] | None = None,
     ) -> Frame:
         """Render one picture. The same input on the same device gives the same bits.
@@ -64,8 +64,8 @@ class Renderer:
         Parameters
         ----------
         scene : what to draw. size : (width, height) in pixels.
+        time : seconds, for objects that move by themselves; nothing does yet.
         samples : jittered pictures that are averaged, for anti-aliasing.
-        time : seconds, for objects that move by themselves.
         progress : called with the share that is done, 0 to 1.
 
         Raises

@@ -44,7 +44,7 @@ def render(scene: Scene, size: tuple[int, int] = (800, 600), samples: int = 1, t
     ------
     SceneError : for a value out of range. NoAdapterError : when there is no device to render on.
     """
-    return default_renderer().render(scene, size, samples, time)
+    return default_renderer().render(scene, size, time=time, samples=samples)
 
 
 def trace(

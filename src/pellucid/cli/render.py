@@ -195,7 +195,7 @@ def _draw(source: Path, is_scene: bool, output: Path, wish: Wish) -> None:
     with progress_bar() as bar:
         scene, story = _scene_of_file(source, wish, bar) if is_scene else _scene_of_mesh(source, wish, bar)
         loaded = time.perf_counter()
-        frame = default_renderer().render(scene, wish.size, wish.samples, progress=bar.step("drawing"))
+        frame = default_renderer().render(scene, wish.size, samples=wish.samples, progress=bar.step("drawing"))
     frame.save(output)
     prepared = frame.timings["prepare"] / 1e3
     drawn = frame.timings["total"] / 1e3 - prepared
