@@ -114,7 +114,7 @@ def _draw(picture: Any, path: Path, size: Size, samples: int, bar: Bar, before: 
     scene = picture.build()
     built = time.perf_counter() - begun
     frame = default_renderer().render(
-        scene, size, samples, progress=lambda share: bar.overall(f"{label}: drawing", (before + share) / count)
+        scene, size, samples=samples, progress=lambda share: bar.overall(f"{label}: drawing", (before + share) / count)
     )
     frame.save(path)
     prepare = frame.timings["prepare"] / 1e3
