@@ -1,0 +1,70 @@
+// Straight pieces between sharp surfaces, by sphere tracing of signed distances.
+
+//!import techniques/eikonal/shaders/box
+//!import techniques/eikonal/shaders/interfaces
+//!import techniques/eikonal/shaders/gather
+
+// Sphere tracing along a straight line. Only the distance along it is carried from step to step; surfaces are worked out and
+// matter acts once, behind the loop.
+fn march_straight(walk: ptr<function, Walk>, crossing: ptr<function, Crossing>) -> u32 {
+    let start = (*walk).x;
+    let d = normalize((*walk).p0);
+    let room = intersect_box(start, d, volume.proxy_half).y;
+    var steps = (*walk).steps;
+    var event = PAUSED;
+    var t = 0.0;
+    while (event == PAUSED) {
+        let found = next_change(start, d, t, room, (*walk).signs, &steps);
+        t = found.t;
+        event = select(LEFT, EXHAUSTED, steps >= volume.max_steps);
+        if (found.blocked) { event = OPAQUE; }
+        if (found.changed) {
+            let hit = surface_between(start + t * d, found.ahead * d, (*walk).signs, found.distances);
+            t += hit.part * found.ahead;
+            let flipped = (*walk).signs ^ (1u << hit.region);
+            // A surface hidden inside a region that goes first: nothing happens there.
+            event = select(INTERFACE, PAUSED, owner_of(flipped) == (*walk).region);
+            if (event == PAUSED) { (*walk).signs = flipped; }
+            *crossing = crossing_at(start + t * d, (*walk).p0, hit.normal, flipped);
+        }
+    }
+    (*walk).steps = steps;
+    (*walk).x = start + t * d;
+    gather_region(walk, t);
+    return event;
+}
+
+// A step in which a sign changes, from t to t + ahead; or where the search ended without one.
+struct Change {
+    t: f32,
+    ahead: f32,
+    changed: bool,
+    blocked: bool,          // an opaque voxel lies at t
+    distances: vec4f,       // at t + ahead
+}
+
+fn next_change(start: vec3f, d: vec3f, from_t: f32, room: f32, signs: u32, steps: ptr<function, u32>) -> Change {
+    var found = Change(from_t, 0.0, false, false, vec4f(0.0));
+    var stride = FIRST_STRIDE * volume.voxel;
+    while (found.t < room && !found.changed && !found.blocked && *steps < volume.max_steps) {
+        let last = stride >= room - found.t;
+        found.ahead = min(stride, room - found.t);
+        let x = start + (found.t + found.ahead) * d;
+        found.distances = distances_at(x);
+        found.changed = signs_of(found.distances) != signs;
+        found.t = select(select(found.t + found.ahead, room, last), found.t, found.changed);
+        found.blocked = BLOCKS && opaque_at(x).a > 0.5 && !found.changed;
+        stride = stride_from(found.distances, x);
+        *steps += 1u;
+    }
+    return found;
+}
+
+fn gather_region(walk: ptr<function, Walk>, length_os: f32) {
+    let n = length((*walk).p0);
+    if ((*walk).region >= AMBIENT) {
+        (*walk).optical_path += n * length_os * volume.scale;
+    } else {
+        gather(walk, volume.region_absorption[(*walk).region].xyz, volume.region_emission[(*walk).region].xyz, n, length_os);
+    }
+}
