@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 import os
 import platform
 import stat
@@ -117,7 +118,10 @@ class Device:
         except (RuntimeError, wgpu.GPUError) as error:
             name = adapter.info.get("device", "the adapter")
             raise NoAdapterError(f"{name} could not be opened ({error}): {adapter_remedy()}") from error
-        return cls(device, dict(adapter.info), frozenset(device.features), dict(device.limits))
+        opened = cls(device, dict(adapter.info), frozenset(device.features), dict(device.limits))
+        if opened.is_software:
+            logging.getLogger("pellucid").info("no GPU: %s does the work on the CPU", opened.name)
+        return opened
 
     @property
     def is_software(self) -> bool:

@@ -56,7 +56,8 @@ fn surface_between(from_x: vec3f, chord: vec3f, signs: u32, distances: vec4f) ->
         if (guess < part) { region = k; part = guess; }
     }
     let boundary = boundary_at(from_x + part * chord, region);
-    let slope = dot(per_metre(boundary), chord);
+    let steepest = per_metre(boundary);
+    let slope = dot(steepest, chord);
     let correction = select(0.0, boundary.distance / slope, abs(slope) > 0.05 * length(chord) / volume.voxel);
-    return Met(region, clamp(part - correction, 0.0, 1.0), normalize(per_metre(boundary)));
+    return Met(region, clamp(part - correction, 0.0, 1.0), normalize(select(steepest, -chord, dot(steepest, steepest) < 1e-6)));
 }
