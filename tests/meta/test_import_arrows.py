@@ -32,7 +32,7 @@ EDGE = {
     "cli",
     "view",
     "cluster",
-    "bench",
+    "benchmarks",
     "demo",
     "gallery",
 }  # nobody imports these; they may import all
