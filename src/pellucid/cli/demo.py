@@ -46,7 +46,7 @@ def demo(
         list[str] | None, typer.Option(metavar="NAME", help="Draw this picture only; may be given several times.")
     ] = None,
 ) -> None:
-    """Draw the gallery: a dozen things that bend light, one picture each, and a sheet of them all.
+    """Draw the gallery: things that bend light, one picture each, and a sheet of them all.
 
     Pictures that are there already are drawn anew. After ctrl-C the finished ones stay.
     """

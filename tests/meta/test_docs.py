@@ -1,0 +1,107 @@
+"""What the pages say is so: their example runs, their links lead somewhere, their commands exist."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+import typer
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")), *sorted((ROOT / "src").rglob("README.md"))]
+LINK = re.compile(r"!?\[[^\]\[]*\]\(([^)\s]+)\)")
+FENCE = re.compile(r"^```(\w*)\n(.*?)^```", flags=re.MULTILINE | re.DOTALL)
+INLINE = re.compile(r"`([^`\n]+)`")
+
+
+def name(path: Path) -> str:
+    return str(path.relative_to(ROOT))
+
+
+def code(text: str) -> list[str]:
+    """Lines of fenced blocks that are no Python, and what stands in backquotes outside of all blocks."""
+    blocks = [body for language, body in FENCE.findall(text) if language != "python"]
+    return [line.strip() for body in blocks for line in body.splitlines()] + INLINE.findall(FENCE.sub("", text))
+
+
+def quoted(program: str) -> list[tuple[Path, list[str]]]:
+    """(page, words after the program's name) of every line of code that calls the program."""
+    start = re.compile(rf"^(?:\$ )?(?:\.venv/bin/)?{program} (.*)$")
+    found = []
+    for page in PAGES:
+        for line in code(page.read_text(encoding="utf-8")):
+            if call := start.match(line):
+                found.append((page, shlex.split(call[1], comments=True)))
+    return found
+
+
+def test_the_example_of_the_readme_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    blocks = [body for language, body in FENCE.findall((ROOT / "README.md").read_text("utf-8")) if language == "python"]
+    assert len(blocks) == 1 and 8 <= len([line for line in blocks[0].splitlines() if line.strip()]) <= 12
+    small = blocks[0]
+    for written, tried in (("size=(800, 600)", "size=(64, 48)"), ("samples=4", "samples=1"), ("=96", "=32")):
+        assert written in small
+        small = small.replace(written, tried)
+    monkeypatch.chdir(tmp_path)
+    values: dict[str, object] = {}
+    exec(compile(small, "README.md", "exec"), values)
+    assert [p.name for p in tmp_path.iterdir()] == ["ball.png"]
+    assert values["frame"].radiance.std() > 0.01  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name)
+def test_links_lead_somewhere(page: Path) -> None:
+    links = [link for link in LINK.findall(page.read_text(encoding="utf-8")) if "://" not in link]
+    missing = [link for link in links if not (page.parent / link.split("#")[0]).exists()]
+    assert missing == []
+
+
+def test_every_page_is_listed_in_the_index() -> None:
+    index = ROOT / "docs" / "index.md"
+    listed = {(index.parent / link).resolve() for link in LINK.findall(index.read_text(encoding="utf-8"))}
+    assert [name(page) for page in PAGES if page != index and page not in listed] == []
+
+
+def test_commands_are_understood() -> None:
+    command = typer.main.get_command(__import__("pellucid.cli.app", fromlist=["app"]).app)
+    calls = quoted("pellucid")
+    assert len(calls) > 5
+    for page, (first, *rest) in calls:
+        if first.startswith("-"):
+            continue
+        sub = command.commands.get(first)  # type: ignore[attr-defined]
+        assert sub is not None, f"{name(page)}: there is no `pellucid {first}`"
+        if not rest:  # the name of a command, in a sentence
+            continue
+        try:
+            sub.make_context(first, list(rest))  # parses and checks; runs nothing
+        except Exception as error:
+            pytest.fail(f"{name(page)}: `pellucid {first} {shlex.join(rest)}`: {error}")
+
+
+def test_targets_of_make_exist() -> None:
+    targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), flags=re.MULTILINE))
+    calls = quoted("make")
+    assert {"demo", "test"} <= {words[0] for _, words in calls}
+    assert [(name(page), words) for page, words in calls if words[0] not in targets] == []
+
+
+def test_tools_and_tests_exist() -> None:
+    calls = [(page, word) for page, words in quoted("python") for word in words if word.endswith(".py")]
+    assert calls and [(name(page), word) for page, word in calls if not (ROOT / word).is_file()] == []
+
+
+def test_the_gallery_says_what_the_pictures_say() -> None:
+    from pellucid.gallery import PICTURES
+
+    text = " ".join((ROOT / "docs" / "gallery.md").read_text(encoding="utf-8").split())
+    for picture in PICTURES:
+        assert f"images/gallery/{picture.name}.jpg" in text, picture.name
+        assert picture.title in text and picture.you_should_see in text, picture.name
+
+
+def test_pictures_are_small() -> None:
+    sizes = {path: path.stat().st_size for path in (ROOT / "docs" / "images").rglob("*") if path.is_file()}
+    assert max(sizes.values()) <= 300_000 and sum(sizes.values()) <= 2_000_000

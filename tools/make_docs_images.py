@@ -1,0 +1,52 @@
+"""Pictures of the pages, made small from those of the gallery.
+
+Run ``pellucid demo --output out/demo`` and then ``python tools/make_docs_images.py out/demo``. It writes
+docs/images/gallery/NAME.jpg (400 x 300) and docs/images/demo.jpg, the sheet of them all for the README; with
+``--comparison out/povray`` also the pictures of ``tools/compare_povray.py`` that docs/truth.md shows.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+import OpenImageIO
+
+DOCS = Path(__file__).resolve().parents[1] / "docs" / "images"
+THUMBNAIL = (400, 300)
+SHEET_WIDTH = 1200
+COMPARED = ("povray", "sharp", "smooth", "sharp_difference_x4", "smooth_difference_x4")
+
+
+def write_jpeg(source: Path, target: Path, size: tuple[int, int], quality: int) -> None:
+    """A picture at another size, as JPEG of a quality of 1 to 100."""
+    picture = OpenImageIO.ImageBuf(str(source))
+    picture = OpenImageIO.ImageBufAlgo.channels(picture, (0, 1, 2))
+    small = OpenImageIO.ImageBufAlgo.resize(picture, filtername="lanczos3", roi=OpenImageIO.ROI(0, size[0], 0, size[1]))
+    small.specmod().attribute("Compression", f"jpeg:{quality}")
+    target.parent.mkdir(parents=True, exist_ok=True)
+    if not small.write(str(target)):
+        sys.exit(f"{target}: {small.geterror() or OpenImageIO.geterror()}")
+
+
+def main() -> None:
+    """Write every picture; stop at the first that is missing."""
+    from pellucid.gallery import PICTURES
+
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0])
+    parser.add_argument("demo", type=Path, help="folder that `pellucid demo` wrote")
+    parser.add_argument("--comparison", type=Path, help="folder that tools/compare_povray.py wrote")
+    options = parser.parse_args()
+    for number, picture in enumerate(PICTURES, start=1):
+        source = options.demo / f"{number:02d}_{picture.name}.png"
+        write_jpeg(source, DOCS / "gallery" / f"{picture.name}.jpg", THUMBNAIL, 82)
+    sheet = options.demo / "contact_sheet.png"
+    spec = OpenImageIO.ImageBuf(str(sheet)).spec()
+    write_jpeg(sheet, DOCS / "demo.jpg", (SHEET_WIDTH, round(SHEET_WIDTH * spec.height / spec.width)), 85)
+    for name in COMPARED if options.comparison else ():
+        write_jpeg(options.comparison / f"{name}.png", DOCS / "povray" / f"{name}.jpg", THUMBNAIL, 85)
+
+
+if __name__ == "__main__":
+    main()
