@@ -73,11 +73,20 @@ fn far_radiance(d: vec3f) -> vec3f {
     return environment_radiance(direction_to_world(d));
 }
 
-// The nearest opaque mesh on the piece from `a` to `b`, where meshes reach into the box.
+// Glass and mesh that touch are taken to have this much air between them, voxels: a piece inside the glass ends before the mesh,
+// and a ray that leaves the glass begins before it, whatever rounding says of the two.
+const CONTACT = 0.05;
+
+fn contact() -> f32 {
+    return CONTACT * volume.voxel;
+}
+
+// The nearest opaque mesh on the piece from `a` to `b`, but for its very ends, where meshes reach into the box.
 fn mesh_between(a: vec3f, b: vec3f) -> SurfaceHit {
-    let reach = distance(a, b);
+    let reach = distance(a, b) - 2.0 * contact();
     if (!MEETS_MESHES || reach <= 0.0) { return SurfaceHit(); }
-    return trace_opaque(to_world(a), direction_to_world(b - a), reach * volume.scale);
+    let d = normalize(b - a);
+    return trace_opaque(to_world(a + contact() * d), direction_to_world(d), reach * volume.scale);
 }
 
 // An opaque voxel is matt; its normal is where its coverage falls.

@@ -56,7 +56,8 @@ fn look_into(entry: ViewRay) -> Seen {
         radiance += weight * walk.emitted * part;
         weight *= pow(max(walk.transmittance, vec3f(1e-30)), vec3f(part));
 
-        var ending = Ending(LOOK_ALONG, select(walk.x, from_x, straight_out || blocked), d, weight);
+        let along = select(select(walk.x, from_x + contact() * d, blocked), from_x - contact() * d, straight_out);
+        var ending = Ending(LOOK_ALONG, along, d, weight);
         if (event == OPAQUE && !blocked) { ending = opaque_ending(walk.x, d, weight); }
         let goes_on = !blocked && (event == INTERFACE || event == PAUSED);
         if (goes_on) { ending.weight = vec3f(0.0); }

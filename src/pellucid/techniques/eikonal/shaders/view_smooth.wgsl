@@ -46,7 +46,8 @@ fn look_through(entry: ViewRay) -> Seen {
     radiance += walk.emitted;
     let d = normalize(select(walk.p0 + walk.q, walk.x - from_x, blocked));
     // A little back where it leaves the box: a mesh may lie just there.
-    var ending = Ending(LOOK_ALONG, select(walk.x - 0.01 * volume.voxel * d, from_x, blocked), d, walk.transmittance);
+    let along = select(walk.x - contact() * d, from_x + contact() * d, blocked);
+    var ending = Ending(LOOK_ALONG, along, d, walk.transmittance);
     if (event == OPAQUE && !blocked) { ending = opaque_ending(walk.x, d, walk.transmittance); }
     let touched = changed >= 0.0 || first >= 0.0 || event == OPAQUE;
     if (touched) { radiance += end_ray(mirrored) + end_ray(ending); }
