@@ -72,6 +72,37 @@ def test_what_is_not_a_mesh_says_why(tmp_path: Path, name: str, content: str, wo
     assert caught.value.path.endswith(name)
 
 
+def test_an_obj_with_umlauts_in_latin_1_is_read_with_its_colours(tmp_path: Path) -> None:
+    (tmp_path / "größe.mtl").write_bytes("# für Glas\nnewmtl grün\nKd 0.1 0.6 0.2\n".encode("latin-1"))
+    text = "# Würfel\nmtllib größe.mtl\nusemtl grün\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n"
+    (tmp_path / "a.obj").write_bytes(text.encode("latin-1"))
+    mesh = read_mesh(tmp_path / "a.obj")
+    assert mesh.faces.shape == (1, 3) and mesh.base_color == pytest.approx((0.1, 0.6, 0.2))
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "latin-1"])
+@pytest.mark.parametrize("suffix", ["ply", "stl"])
+def test_remarks_in_latin_1_do_not_stop_other_formats(tmp_path: Path, suffix: str, encoding: str) -> None:
+    texts = {
+        "ply": "ply\nformat ascii 1.0\ncomment Größe\nelement vertex 3\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+        "stl": "solid Größe\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+        "endfacet\nendsolid Größe\n",
+    }
+    (tmp_path / f"a.{suffix}").write_bytes(texts[suffix].encode(encoding))
+    assert read_mesh(tmp_path / f"a.{suffix}").faces.shape == (1, 3)
+
+
+@pytest.mark.parametrize(
+    ("name", "words"), [("a.obj", "no text"), ("a.glb", "begin with 'glTF'"), ("a.gltf", "begin with '{'")]
+)
+def test_bytes_without_meaning_are_told_apart_from_a_cut_file(tmp_path: Path, name: str, words: str) -> None:
+    (tmp_path / name).write_bytes(np.random.default_rng(0).bytes(4000))
+    with pytest.raises(AssetError, match=words):
+        read_mesh(tmp_path / name)
+
+
 def test_an_absurd_number_of_faces_is_refused_by_the_header(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     ply = tmp_path / "a.ply"
     ply.write_bytes(b"ply\nformat ascii 1.0\nelement vertex 3\nelement face 30000000\nend_header\n")

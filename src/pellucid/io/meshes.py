@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import logging
 import re
 import struct
@@ -86,6 +87,12 @@ def _judge_header(file: Path, suffix: str) -> None:
         if file.stat().st_size < 84 + 50 * faces:
             raise AssetError(file, f"is truncated or not an STL file: {faces} faces announced", "export it again")
         _refuse_many_faces(file, faces)
+    if suffix == ".obj" and b"\0" in head:
+        raise AssetError(file, "is not an OBJ file: it holds bytes that are no text", "export it again")
+    if suffix == ".glb" and not head.startswith(b"glTF"):
+        raise AssetError(file, "is truncated or not a GLB file: it does not begin with 'glTF'", "export it again")
+    if suffix == ".gltf" and not head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{"):
+        raise AssetError(file, "is truncated or not a glTF file: it does not begin with '{'", "export it again")
 
 
 def _refuse_many_faces(file: Path, faces: int) -> None:
@@ -123,7 +130,7 @@ def _triangle_parts(file: Path, suffix: str) -> list[_Part]:
     log = logging.getLogger("trimesh")
     was_disabled, log.disabled = log.disabled, True  # what matters is raised below; the rest only alarms
     try:
-        loaded = trimesh.load_scene(file, process=False)
+        loaded = _loaded(file)
         placed = [loaded.graph[node] for node in loaded.graph.nodes_geometry]
         parts = [_Part(loaded.geometry[name], np.asarray(matrix, np.float64)) for matrix, name in placed]
         parts = [part for part in parts if isinstance(part.mesh, trimesh.Trimesh) and len(part.mesh.faces)]
@@ -136,6 +143,38 @@ def _triangle_parts(file: Path, suffix: str) -> list[_Part]:
     finally:
         log.disabled = was_disabled
     return parts
+
+
+def _loaded(file: Path) -> Any:
+    """The file as a trimesh scene. Older programs write names and remarks in Latin-1, where trimesh gives up."""
+    import trimesh
+    from trimesh.resolvers import FilePathResolver
+
+    class Texts(FilePathResolver):
+        def get(self, name: str) -> bytes:
+            content = bytes(super().get(name))
+            return _as_utf8(content) if name.lower().endswith(".mtl") else content
+
+    content = file.read_bytes()
+    match file.suffix.lower():
+        case ".obj":
+            content = _as_utf8(content)
+        case ".ply":
+            header, end, body = content.partition(b"end_header")
+            content = _as_utf8(header) + end + body
+        case ".stl" if content[:80].lstrip().lower().startswith(b"solid") and b"\0" not in content[:4096]:
+            content = _as_utf8(content)
+    return trimesh.load_scene(
+        io.BytesIO(content), file_type=file.suffix[1:].lower(), resolver=Texts(str(file)), process=False
+    )
+
+
+def _as_utf8(content: bytes) -> bytes:
+    try:
+        content.decode("utf-8")
+    except UnicodeDecodeError:
+        return content.decode("latin-1").encode("utf-8")
+    return content
 
 
 def _merged(parts: Sequence[_Part], name: str) -> MeshData:
