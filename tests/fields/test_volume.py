@@ -158,3 +158,28 @@ def test_bad_regions_are_refused():
         Volume.from_regions([(ball(0.1), 1.5), (np.zeros((3, 3, 3)), 1.5)], 8, 1.0)
     with pytest.raises(SceneError):
         Volume.from_sdf(ball(0.1), "no such glass", 8, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("n", "words"),
+    [
+        (np.full((2, 2, 2), 1.5 + 0.1j), "complex128"),
+        (np.full((2, 2, 2), None), "object"),
+        (np.full((2, 2, 2), "1.5"), "real numbers"),
+        ([[[1.5, 1.5], [1.5]]], "differ in length"),
+    ],
+)
+def test_what_is_no_array_of_real_numbers_is_refused(n, words):
+    with pytest.raises(SceneError, match=rf"^n: .*{words}"):
+        Volume.from_array(n, 1.0)
+
+
+def test_bodies_that_are_no_pairs_are_refused_by_number():
+    with pytest.raises(SceneError, match=r"regions\[1\]: cannot be 'function'"):
+        Volume.from_regions([(ball(0.3), "water"), ball(0.2)], 8, 1.0)
+
+
+def test_a_volume_is_shown_in_a_line():
+    text = repr(Volume.from_sdf(ball(0.3), "water", 32, 1.0))
+    assert text == "Volume(1 x 1 x 1 m, shape=(32, 32, 32), ambient_n=1, of water)"
+    assert len(repr(Volume.from_sdf(ball(0.3), "water", 32, 1.0).regions[0])) < 1000

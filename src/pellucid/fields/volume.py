@@ -35,7 +35,7 @@ class Region:
     emission : radiance gained per metre, linear RGB, >= 0.
     """
 
-    sdf: Voxels
+    sdf: Voxels = field(repr=False)
     medium: Medium
     name: str = ""
     emission: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -136,12 +136,13 @@ class Volume:
         extent_m : edges (x, y, z), or one number: the longest edge, with cubic voxels.
         others : as in `Volume`.
         """
-        index = np.asarray(n)
+        index = _numbers("n", n)
         if index.ndim not in (3, 4) or (index.ndim == 4 and index.shape[3] != 3):
             raise SceneError("n", f"has shape {index.shape}", "give (Z, Y, X) or (Z, Y, X, 3)")
         check_size("n", index.shape[:3])
-        if not np.isfinite(index).all():
-            raise SceneError("n", "has values that are not finite")
+        bad = int(np.count_nonzero(~np.isfinite(index)))
+        if bad:
+            raise SceneError("n", f"has {bad} values that are not finite", "replace NaN and infinity by an index")
         if float(index.min()) <= 0.0:
             raise SceneError("n", f"has {float(index.min()):g}", "a refractive index is above 0")
         ambient = _index("ambient_n", ambient_n)
@@ -193,7 +194,10 @@ class Volume:
         """
         shape, extent = sampling(resolution, extent_m)
         bodies = []
-        for i, (distance, medium) in enumerate(regions):
+        for i, pair in enumerate(regions):
+            if not isinstance(pair, tuple | list) or len(pair) != 2:
+                raise SceneError(f"regions[{i}]", f"cannot be {type(pair).__name__!r}", "give (distance, medium)")
+            distance, medium = pair
             name = f"regions[{i}].sdf"
             values = sampled(name, distance, shape, extent) if callable(distance) else distance
             bodies.append(Region(_voxels(name, values, None, shape), media.resolve(medium)))
@@ -273,6 +277,12 @@ class Volume:
             opaque=self.opaque,
         )
 
+    def __repr__(self) -> str:
+        edges = " x ".join(f"{edge:g}" for edge in self.extent_m)
+        held = [name for name in _CHANNELS if getattr(self, name) is not None]
+        bodies = [f"{region.name or region.medium.name}" for region in self.regions]
+        return f"Volume({edges} m, shape={self.shape}, ambient_n={self.ambient_n:g}, of {', '.join(bodies + held)})"
+
     def replace(self, **changes: Any) -> Volume:
         """A copy with some fields changed."""
         return replace(self, **changes)
@@ -307,13 +317,22 @@ def _common_shape(volume: Volume) -> tuple[int, int, int]:
     return z, y, x
 
 
+def _numbers(name: str, values: npt.ArrayLike) -> npt.NDArray[Any]:
+    """An array of real numbers; complex ones would lose their imaginary part without a word."""
+    try:
+        array = np.asarray(values)
+    except ValueError:  # rows of different lengths
+        raise SceneError(name, "is no array: its rows differ in length", "give an array of numbers") from None
+    if array.dtype.kind not in "fiub":
+        raise SceneError(name, f"is of type {array.dtype}", "give an array of real numbers")
+    return array
+
+
 def _voxels(
     name: str, values: npt.ArrayLike, channels: int | None, shape: tuple[int, int, int] | None = None
 ) -> Voxels:
     """A checked, contiguous, read-only float32 copy. `channels`: None for a scalar, -1 for a scalar or three."""
-    array = np.asarray(values)
-    if not (np.issubdtype(array.dtype, np.number) or array.dtype == bool) or np.iscomplexobj(array):
-        raise SceneError(name, f"is of type {array.dtype}", "give real numbers")
+    array = _numbers(name, values)
     allowed: list[tuple[int, ...]] = [(), (3,)] if channels == -1 else [() if channels is None else (channels,)]
     if array.ndim < 3 or array.shape[3:] not in allowed or (shape is not None and array.shape[:3] != shape):
         where = "Z, Y, X" if shape is None else ", ".join(map(str, shape))
