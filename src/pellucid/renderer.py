@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time as clock
 from collections.abc import Callable
+from operator import index as whole
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from pellucid.frame import Frame
 from pellucid.gpu import Device, PassTimer
 from pellucid.gpu.targets import Targets
 from pellucid.scene import Camera, RefractiveVolume, Scene
+from pellucid.scene.checks import number
 from pellucid.surroundings import Surroundings
 from pellucid.techniques.eikonal.passes import EikonalTechnique
 from pellucid.techniques.environment.passes import Sky
@@ -70,9 +72,10 @@ class Renderer:
 
         Raises
         ------
-        SceneError : for a size or a number of samples out of range.
+        SceneError : for a size, a number of samples or a time out of range.
         """
         begun = clock.perf_counter()
+        number("time", time, unit="seconds")
         width, height = self._check(scene, size, samples)
         self._use_size((width, height))
         assert self._targets is not None
@@ -95,9 +98,9 @@ class Renderer:
             raise SceneError("scene", f"is a {type(scene).__name__}", "give a pellucid.Scene")
         limit = self.device.limits["max-texture-dimension-2d"]
         try:
-            width, height = (int(s) for s in size)
+            width, height = (whole(s) for s in size)
         except (TypeError, ValueError):
-            raise SceneError("size", f"is {size!r}", "give (width, height) in pixels") from None
+            raise SceneError("size", f"is {size!r}", "give (width, height) in whole pixels") from None
         if not (1 <= width <= limit and 1 <= height <= limit):
             raise SceneError("size", f"is {width} x {height}", f"use 1 to {limit} pixels a side on this device")
         if isinstance(samples, bool) or not isinstance(samples, int | np.integer) or not 1 <= samples <= 65536:
