@@ -297,6 +297,8 @@ def test_several_faults_are_named_at_once(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "content", "words"),
     [
+        ("a.json", '{"camera": {"fov_deg": 1, "fov_deg": 2}}', "'fov_deg' stands twice"),
+        ("a.json", "[" * 100_000, "nested too deeply"),
         ("a.json", "{", "not valid JSON.*line 1"),
         ("a.toml", "x = ", "not valid TOML: Invalid value"),
         ("a.json", "", "empty"),
@@ -313,6 +315,40 @@ def test_files_that_cannot_be_used(tmp_path: Path, name: str, content: str, word
     (tmp_path / name).write_text(content)
     with pytest.raises(AssetError, match=words):
         load_scene(tmp_path / name)
+
+
+def test_a_byte_order_mark_is_no_fault(tmp_path: Path) -> None:
+    (tmp_path / "a.json").write_bytes(b'\xef\xbb\xbf{"camera": {"position": [0, 0, 1]}}')
+    assert load_scene(tmp_path / "a.json").camera.position == (0.0, 0.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("values", "more", "blamed", "words"),
+    [
+        (np.full((2, 2, 2), np.nan), {}, "n.npy", "8 values that are not finite"),
+        (-np.ones((2, 2, 2)), {}, "n.npy", "index is above 0"),
+        (np.ones((2, 2, 2)), {"absorption": "a.npy"}, "a.npy", "as absorption of a volume: has -1"),
+    ],
+)
+def test_an_array_of_a_scene_is_named_by_its_file(
+    tmp_path: Path, values: np.ndarray, more: dict[str, str], blamed: str, words: str
+) -> None:
+    np.save(tmp_path / "n.npy", values)
+    np.save(tmp_path / "a.npy", -np.ones((2, 2, 2, 3)))
+    volume = {"type": "refractive_volume", "array": "n.npy", "extent_m": 0.1, **more}
+    (tmp_path / "a.json").write_text(json.dumps({"camera": {"position": [0, 0, 1]}, "objects": [volume]}))
+    with pytest.raises(AssetError, match=words) as caught:
+        load_scene(tmp_path / "a.json")
+    assert caught.value.path == str(tmp_path / blamed)
+
+
+def test_a_flat_mesh_of_a_scene_is_named_by_its_file(tmp_path: Path) -> None:
+    (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    volume = {"type": "refractive_volume", "mesh": "a.obj", "medium": "water", "resolution": 16}
+    (tmp_path / "a.json").write_text(json.dumps({"camera": {"position": [0, 0, 1]}, "objects": [volume]}))
+    with pytest.raises(AssetError, match="encloses no voxel centre") as caught:
+        load_scene(tmp_path / "a.json")
+    assert caught.value.path == str(tmp_path / "a.obj")
 
 
 def test_bytes_that_are_not_text(tmp_path: Path) -> None:

@@ -81,12 +81,23 @@ def save_scene(scene: Scene, path: str | PathLike[str]) -> None:
 
 def _parsed(file: Path, suffix: str) -> Any:
     try:
-        text = file.read_text(encoding="utf-8")
-        return json.loads(text) if suffix == ".json" else tomllib.loads(text)
+        text = file.read_text(encoding="utf-8-sig")  # some editors put a byte order mark first
+        return json.loads(text, object_pairs_hook=_once_each) if suffix == ".json" else tomllib.loads(text)
     except UnicodeDecodeError as error:
         raise AssetError(file, f"is not UTF-8 text: {error.reason}", "save it as UTF-8") from error
-    except (json.JSONDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
+    except RecursionError as error:
+        raise AssetError(file, f"is not valid {suffix[1:].upper()}: it is nested too deeply", "correct it") from error
+    except ValueError as error:  # what both parsers raise, and a name that stands twice
         raise AssetError(file, f"is not valid {suffix[1:].upper()}: {error}", "correct it there") from error
+
+
+def _once_each(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """A JSON object; of two fields of one name the parser would drop the first without a word (TOML refuses them)."""
+    table = dict(pairs)
+    if len(table) < len(pairs):
+        twice = next(name for i, (name, _) in enumerate(pairs) if name in dict(pairs[:i]))
+        raise ValueError(f"the field {twice!r} stands twice in one table")
+    return table
 
 
 def _explained(file: Path, data: Any, error: ValidationError) -> SceneError:
@@ -112,6 +123,8 @@ def _words(fault: ErrorDetails) -> tuple[str, str]:
         return "is not a field that belongs here", f"did you mean {close[0]!r}?" if close else "remove it"
     if fault["type"] == "model_type":
         return "must be a table of named fields", 'such as { "camera": { "position": [0, 0, 1] } }'
+    if fault["type"] == "tuple_type":
+        return f"should be a list of numbers, got {fault['input']!r:.60}", "such as [0, 0.1, 1]"
     if fault["type"] == "unknown_kind":
         return fault["msg"], ""
     shown = repr(fault["input"])

@@ -137,7 +137,13 @@ def _volume_of_array(part: schema.VolumeOfArray, folder: Path, look: dict[str, A
     arrays: dict[str, Any] = {name: read_volume(path) for name, path in files.items()}
     settings = part.given(*names, *schema.VolumeBase.model_fields, "center_m")
     recipe = {**settings, **{name: str(path.resolve()) for name, path in files.items()}}
-    return RefractiveVolume.from_array(arrays.pop("array"), **arrays, **settings, **look, origin=Origin(recipe))
+    try:
+        return RefractiveVolume.from_array(arrays.pop("array"), **arrays, **settings, **look, origin=Origin(recipe))
+    except SceneError as error:
+        blamed = files.get("array" if error.field == "n" else error.field)
+        if blamed is None:
+            raise
+        raise AssetError(blamed, f"as {error.field} of a volume: {error.reason}", error.remedy) from error
 
 
 def _stored_volume(part: schema.StoredVolume, folder: Path, look: dict[str, Any]) -> RefractiveVolume:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from os import PathLike, fspath
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from pellucid.errors import SceneError
+from pellucid.errors import AssetError, SceneError
 from pellucid.scene import checks
 from pellucid.scene.placement import Origin, SceneObject, check_placement, store, translation_matrix
 from pellucid.scene.quality import Quality
@@ -121,9 +122,10 @@ class RefractiveVolume(SceneObject):
         options = _checked(placement)
         substance = media.resolve(medium, "refractive_volume.medium")
         vertices, faces, recipe = _triangles(mesh)
-        volume, center = Volume.from_mesh(
-            vertices, faces, substance, resolution, ambient_n=ambient_n, progress=progress
-        )
+        with _blaming(mesh):
+            volume, center = Volume.from_mesh(
+                vertices, faces, substance, resolution, ambient_n=ambient_n, progress=progress
+            )
         if recipe is not None and "center_m" not in options:
             made = {**recipe, "medium": substance, "resolution": resolution, "ambient_n": volume.ambient_n}
             options["origin"] = Origin(made)
@@ -241,6 +243,17 @@ def _quality(name: str, value: Any) -> Quality:
     if not isinstance(value, Quality):
         raise SceneError(name, f"cannot be {type(value).__name__!r}", "give Quality(...)")
     return value
+
+
+@contextmanager
+def _blaming(mesh: Any) -> Iterator[None]:
+    """What is wrong with the triangles of a file is said of the file."""
+    try:
+        yield
+    except SceneError as error:
+        if isinstance(mesh, str | PathLike) and error.field in ("mesh", "vertices", "faces"):
+            raise AssetError(fspath(mesh), error.reason, error.remedy) from error
+        raise
 
 
 def _triangles(mesh: Any) -> tuple[np.ndarray, np.ndarray, dict[str, Any] | None]:
