@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import subprocess
 import sys
 
@@ -60,6 +61,15 @@ def test_ctrl_c_ends_with_one_clean_line(pellucid, monkeypatch):
     monkeypatch.setattr("pellucid.media.names", interrupt)
     said = pellucid("media")
     assert (said.code, said.err.strip()) == (1, "stopped: interrupted")
+
+
+def test_a_full_disk_under_standard_output_is_no_fault_of_ours(pellucid, monkeypatch):
+    def full():
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("pellucid.media.names", full)
+    said = pellucid("media")
+    assert said.code == 1 and said.err.startswith("error: the disk is full") and "Traceback" not in said.err
 
 
 def test_help_loads_neither_device_nor_mesh_library():

@@ -78,7 +78,7 @@ def test_rays_that_are_none(pellucid, slab, tmp_path, name):
 def test_a_volume_with_nan(pellucid, tmp_path):
     np.save(tmp_path / "nan.npy", np.full((4, 4, 4), np.nan))
     said = pellucid("trace", tmp_path / "nan.npy", "--extent", "1", *AHEAD)
-    assert said.code == 1 and "not finite" in said.err
+    assert said.code == 1 and "nan.npy: has 64 values that are not finite" in said.err
 
 
 def test_a_volume_of_the_wrong_shape(pellucid, tmp_path):

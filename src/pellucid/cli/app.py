@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import inspect
 import sys
 import traceback
@@ -33,6 +34,10 @@ class Commands(TyperGroup):
             complain("interrupted", label="stopped")
         except MemoryError:
             complain("there is not enough memory for this; use a smaller picture or a lower resolution")
+        except OSError as error:  # files of the user's are AssetErrors by now; this is standard output itself
+            if error.errno != errno.ENOSPC:
+                raise
+            complain("the disk is full, so not everything could be printed; make space")
         raise typer.Exit(1)
 
 

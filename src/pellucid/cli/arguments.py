@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 import re
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
@@ -102,6 +104,17 @@ def substance(text: str) -> str | float:
         return float(text)
     except ValueError:
         return text
+
+
+@contextmanager
+def blaming(file: Path, *fields: str) -> Iterator[None]:
+    """What is wrong with these fields of a volume came out of the file, and is said of it."""
+    try:
+        yield
+    except SceneError as error:
+        if error.field in fields:
+            raise AssetError(file, error.reason, error.remedy) from error
+        raise
 
 
 def check_output(path: Path, suffixes: tuple[str, ...], verb: str = "written") -> Path:

@@ -14,6 +14,7 @@ from pellucid.cli.arguments import (
     PICTURES,
     Size,
     Vector,
+    blaming,
     check_output,
     check_pixels,
     check_size,
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from pellucid.media import Medium
     from pellucid.scene import Scene
 
+LENGTHS_M = (1e-6, 1e6)
 ONLY_FOR_MESHES = ("medium", "dispersion", "boundary", "resolution", "floor", "up", "scale")
 
 
@@ -235,17 +237,28 @@ def _scene_of_mesh(source: Path, wish: Wish, bar: Bar) -> tuple[Scene, str]:
     mesh = read_mesh(source)
     turned, rotation = turned_up(mesh.vertices, wish.up)
     vertices = wish.scale * turned[np.unique(mesh.faces)]  # files hold stray ones
+    _check_length(source, vertices)
     camera = framed_camera(vertices, wish.size, View(wish.camera, wish.target, wish.fov))
     medium = media.resolve(substance(wish.medium))
     _warn_of_size(vertices, medium)
-    body = RefractiveVolume.from_mesh(
-        (wish.scale * mesh.vertices, mesh.faces), medium, wish.resolution, progress=bar.step("filling the mesh"),
-        boundary=wish.boundary, dispersion=wish.dispersion, rotation=rotation,
-    )  # fmt: skip
+    with blaming(source, "mesh", "vertices", "faces"):
+        body = RefractiveVolume.from_mesh(
+            (wish.scale * mesh.vertices, mesh.faces), medium, wish.resolution, progress=bar.step("filling the mesh"),
+            boundary=wish.boundary, dispersion=wish.dispersion, rotation=rotation,
+        )  # fmt: skip
     scene = scene_around(body, vertices, camera, wish.environment or "studio", wish.floor)
     z, y, x = body.volume.shape
     story = f"{source.name} in {medium.name}, {len(mesh.faces):,} triangles in {x} x {y} x {z} voxels, {wish.boundary}"
     return scene.replace(**_look(wish)), story
+
+
+def _check_length(source: Path, vertices: np.ndarray) -> None:
+    """Single precision, in which light is followed, holds neither atoms nor planets next to a camera."""
+    length = float((vertices.max(axis=0) - vertices.min(axis=0)).max())
+    low, high = LENGTHS_M
+    if not low <= length <= high:
+        reason = f"is {length:.3g} m long; {low:g} to {high:g} m can be drawn"
+        raise AssetError(source, reason, "set its size with --scale, such as --scale 0.001 for millimetres")
 
 
 def _warn_of_size(vertices: np.ndarray, medium: Medium) -> None:

@@ -11,6 +11,7 @@ import typer
 from pellucid.cli.arguments import (
     Edges,
     Vector,
+    blaming,
     check_output,
     parse_edges,
     parse_positive,
@@ -140,7 +141,8 @@ def _array(path: Path, extent: Edges | None, ambient_n: float) -> RefractiveVolu
 
     assert extent is not None
     edges = extent[0] if len(extent) == 1 else tuple(extent)
-    return RefractiveVolume.from_array(read_volume(path), edges, ambient_n, boundary="smooth")
+    with blaming(path, "n"):
+        return RefractiveVolume.from_array(read_volume(path), edges, ambient_n, boundary="smooth")
 
 
 def _mesh(path: Path, medium: str, resolution: int, boundary: str, ambient_n: float) -> RefractiveVolume:
