@@ -296,7 +296,7 @@ def test_objects_that_share_a_volume_share_its_textures(device, ball):
 
 @pytest.mark.parametrize("boundary", BOUNDARIES)
 def test_glass_that_stands_on_a_floor_has_no_speckle(renderer, boundary):
-    """Touching and a hundredth of a millimetre apart must look the same: rounding decides nothing."""
+    """Lifted by a hundredth of a millimetre it changes no more than when it is far from the floor: edges move, no more."""
     cube = pl.Volume.from_sdf(shapes.box((0.08, 0.08, 0.08)), 1.5, 64, 0.1)
     floor = pl.Mesh.checkerboard(2.0, squares=20)
     camera = pl.Camera(position=(0.05, 0.12, 0.45), target=(0, 0.05, 0), fov_deg=22)
@@ -306,5 +306,7 @@ def test_glass_that_stands_on_a_floor_has_no_speckle(renderer, boundary):
         item = pl.RefractiveVolume(cube, boundary=boundary, position=(0, height, 0), rotation=(0, 30, 0))
         return renderer.render(scene(item, floor, environment=around, camera=camera), SIZE).radiance
 
-    differs = np.abs(picture(0.04) - picture(0.04001)).max(axis=2) > 0.05
-    assert differs.mean() < 5e-3, f"{differs.mean():.1%} of the pixels change"
+    touching, clear = (
+        np.mean(np.abs(picture(height) - picture(height + 1e-5)).max(axis=2) > 0.05) for height in (0.04, 0.06)
+    )
+    assert touching < 1.2 * clear < 0.02, f"{touching:.1%} of the pixels change, {clear:.1%} of a cube that hovers"
