@@ -93,6 +93,16 @@ def test_tools_and_tests_exist() -> None:
     assert calls and [(name(page), word) for page, word in calls if not (ROOT / word).is_file()] == []
 
 
+def test_the_tests_that_pages_name_exist() -> None:
+    defined = set()
+    for path in (ROOT / "tests").rglob("test_*.py"):
+        defined |= set(re.findall(r"^def (test_\w+)", path.read_text(encoding="utf-8"), flags=re.MULTILINE))
+    named = {(name(page), word) for page in PAGES for word in INLINE.findall(page.read_text(encoding="utf-8"))}
+    assert [
+        (page, word) for page, word in sorted(named) if re.fullmatch(r"test_\w+", word) and word not in defined
+    ] == []
+
+
 def test_the_gallery_says_what_the_pictures_say() -> None:
     from pellucid.gallery import PICTURES
 
