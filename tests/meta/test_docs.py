@@ -21,9 +21,11 @@ def name(path: Path) -> str:
 
 
 def code(text: str) -> list[str]:
-    """Lines of fenced blocks that are no Python, and what stands in backquotes outside of all blocks."""
-    blocks = [body for language, body in FENCE.findall(text) if language != "python"]
-    return [line.strip() for body in blocks for line in body.splitlines()] + INLINE.findall(FENCE.sub("", text))
+    """Lines of fenced blocks that are no Python, indented lines, and what stands in backquotes outside of blocks."""
+    fenced = [body for language, body in FENCE.findall(text) if language != "python"]
+    rest = FENCE.sub("", text)
+    indented = re.findall(r"^ {4,}(\S.*)$", rest, flags=re.MULTILINE)
+    return [line.strip() for body in fenced for line in body.splitlines()] + indented + INLINE.findall(rest)
 
 
 def quoted(program: str) -> list[tuple[Path, list[str]]]:
