@@ -296,7 +296,7 @@ def test_objects_that_share_a_volume_share_its_textures(device, ball):
 
 @pytest.mark.parametrize("boundary", BOUNDARIES)
 def test_glass_that_stands_on_a_floor_has_no_speckle(renderer, boundary):
-    """Lifted by a hundredth of a millimetre it changes no more than when it is far from the floor: edges move, no more."""
+    """Lifted by a hundredth of a millimetre it changes no more than far from the floor: edges move, and no more."""
     cube = pl.Volume.from_sdf(shapes.box((0.08, 0.08, 0.08)), 1.5, 64, 0.1)
     floor = pl.Mesh.checkerboard(2.0, squares=20)
     camera = pl.Camera(position=(0.05, 0.12, 0.45), target=(0, 0.05, 0), fov_deg=22)
