@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import resource
 import subprocess
 import sys
@@ -162,3 +163,16 @@ except AssetError as error:
     assert run.stdout.strip() == "refused", run.stderr
     assert target.read_bytes() == b"old"
     assert list(tmp_path.iterdir()) == [target]
+
+
+def test_a_read_only_file_system_is_an_error_in_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(self: Path, missing_ok: bool = False) -> None:
+        raise OSError(errno.EROFS, "Read-only file system")
+
+    def nothing(*_: object) -> None:
+        raise OSError(errno.EROFS, "Read-only file system")
+
+    monkeypatch.setattr(Path, "unlink", refuse)
+    monkeypatch.setattr("pellucid.io.images._encode", nothing)
+    with pytest.raises(AssetError, match="Read-only file system"):
+        write_image(tmp_path / "a.png", np.zeros((2, 2, 3), np.uint8))

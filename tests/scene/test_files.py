@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import errno
 import json
 import tomllib
 from pathlib import Path
@@ -370,6 +371,17 @@ def test_a_scene_that_cannot_be_stated_leaves_nothing_behind(tmp_path: Path) -> 
         save_scene(Scene(Camera((0, 0, 1))), tmp_path / "no" / "a.json")
     with pytest.raises(AssetError, match="suffix"):
         save_scene(Scene(Camera((0, 0, 1))), tmp_path / "a.yaml")
+
+
+def test_a_read_only_file_system_is_an_error_in_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise OSError(errno.EROFS, "Read-only file system")
+
+    monkeypatch.setattr(Path, "unlink", refuse)
+    monkeypatch.setattr(np, "savez", refuse)
+    volume = RefractiveVolume.from_array(INDEX, (0.6, 0.5, 0.4))
+    with pytest.raises(AssetError, match="Read-only file system"):
+        save_scene(Scene(Camera((0, 0, 1)), objects=[volume]), tmp_path / "a.json")
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import uuid
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from os import PathLike
 from pathlib import Path
 
@@ -71,7 +71,8 @@ def replacing(path: str | PathLike[str]) -> Iterator[Path]:
     except OSError as error:
         raise AssetError(file, f"could not be written: {_words(error)}", "check free space and permissions") from error
     finally:
-        part.unlink(missing_ok=True)
+        with suppress(OSError):  # a read-only file system refuses this even where there is nothing to remove
+            part.unlink(missing_ok=True)
 
 
 def _nearby(file: Path) -> str:

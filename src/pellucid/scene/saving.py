@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import os
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -65,7 +66,8 @@ class Sidecars:
     def take_back(self) -> None:
         """Removes every file that was not there before."""
         for path in self._new:
-            path.unlink(missing_ok=True)
+            with suppress(OSError):  # on a read-only file system there is nothing to remove
+                path.unlink(missing_ok=True)
 
     def _path(self, label: str, suffix: str) -> Path:
         path = self.scene_file.with_name(f"{self.scene_file.stem}.{label}{suffix}")
