@@ -183,3 +183,36 @@ def test_a_volume_is_shown_in_a_line():
     text = repr(Volume.from_sdf(ball(0.3), "water", 32, 1.0))
     assert text == "Volume(1 x 1 x 1 m, shape=(32, 32, 32), ambient_n=1, of water)"
     assert len(repr(Volume.from_sdf(ball(0.3), "water", 32, 1.0).regions[0])) < 1000
+
+
+def test_rounding_keeps_a_smooth_body_and_takes_the_facets_off_a_coarse_one() -> None:
+    """A ball of 80 facets, blurred by two voxels, is rounder than before and no larger; rays still cannot overstep."""
+    import trimesh
+
+    coarse = trimesh.creation.icosphere(subdivisions=1, radius=1.0)
+    flat, _ = Volume.from_mesh(coarse.vertices, coarse.faces, 1.5, 64)
+    round_, _ = Volume.from_mesh(coarse.vertices, coarse.faces, 1.5, 64, rounding_voxels=2.0)
+
+    def spread(volume: Volume) -> float:
+        """Standard deviation of the radius of the surface, found between voxels along the axes of the grid."""
+        sdf = volume.regions[0].sdf
+        z, y, x = np.nonzero((sdf[..., :-1] < 0) != (sdf[..., 1:] < 0))
+        a, b = sdf[z, y, x], sdf[z, y, x + 1]
+        at = np.stack([x + a / (a - b), y, z], axis=1) + 0.5 - 0.5 * np.array(sdf.shape[::-1])
+        return float(np.std(np.linalg.norm(at, axis=1)))
+
+    assert spread(round_) < 0.75 * spread(flat)
+    steps = [np.abs(np.diff(round_.regions[0].sdf, axis=a)).max() for a in range(3)]
+    assert max(steps) <= round_.voxel_m[0] * 1.001, "a distance changes by at most the distance"
+
+
+@pytest.mark.parametrize("voxels", [-1.0, 9.0, float("nan"), "1", True])
+def test_rounding_out_of_range_is_refused(voxels: object) -> None:
+    cube = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]
+    with pytest.raises(SceneError, match="rounding_voxels"):
+        Volume.from_mesh(*cube, 1.5, 32, rounding_voxels=voxels)  # type: ignore[arg-type]
+
+
+def test_an_index_that_no_matter_has_is_refused() -> None:
+    with pytest.raises(SceneError, match="no matter"):
+        Volume.from_array(np.full((4, 4, 4), 1e30), 0.1)

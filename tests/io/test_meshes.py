@@ -164,8 +164,9 @@ def test_the_bunny_is_read(shared_data: Path) -> None:
 
 
 def test_a_map_is_linear_with_its_top_row_first(tmp_path: Path) -> None:
-    image_module = pytest.importorskip("PIL.Image", reason="maps of mesh files come through Pillow")
-    image_module.fromarray(np.array([[[188, 0, 0]], [[0, 188, 0]]], np.uint8)).save(tmp_path / "map.png")
+    from PIL import Image
+
+    Image.fromarray(np.array([[[188, 0, 0]], [[0, 188, 0]]], np.uint8)).save(tmp_path / "map.png")
     (tmp_path / "a.mtl").write_text("newmtl m\nmap_Kd map.png\n")
     (tmp_path / "a.obj").write_text(
         "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n"

@@ -29,8 +29,6 @@ LIMITS = (
     "max-buffer-size",
     "max-storage-buffer-binding-size",
 )
-OPTIONAL = {"PIL": ("Pillow", "colour pictures of OBJ and glTF meshes")}
-"""Packages that no extra names but that are used when they are there: import name -> (package, what for)."""
 
 
 def doctor() -> None:
@@ -85,7 +83,6 @@ def _space(console: Console) -> None:
 
 def _extras(console: Console) -> None:
     """Optional parts, and whether their packages are there."""
-    from importlib.util import find_spec
 
     _heading(console, "Optional")
     for extra in metadata.metadata("pellucid").get_all("Provides-Extra") or ():
@@ -95,9 +92,6 @@ def _extras(console: Console) -> None:
         missing = [part for part in parts if _installed(part) is None]
         remedy = f"missing: {', '.join(missing)} (pip install 'pellucid[{extra}]')"
         _line(console, f"pellucid[{extra}]", remedy if missing else "installed")
-    for module, (package, purpose) in OPTIONAL.items():
-        found = "installed" if find_spec(module) else f"missing (pip install {package})"
-        _line(console, f"{package}, for {purpose}", found)
 
 
 def _package(requirement: str) -> str:

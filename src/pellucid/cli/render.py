@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from pellucid.scene import Scene
 
 LENGTHS_M = (1e-6, 1e6)
-ONLY_FOR_MESHES = ("medium", "dispersion", "boundary", "resolution", "floor", "up", "scale")
+ONLY_FOR_MESHES = ("medium", "dispersion", "boundary", "resolution", "rounding", "floor", "up", "scale")
 
 
 class Boundary(StrEnum):
@@ -70,6 +70,7 @@ class Wish:
     dispersion: bool
     boundary: str
     resolution: int
+    rounding: float
     floor: str
     up: str
     scale: float
@@ -103,6 +104,12 @@ def render(
         Boundary, typer.Option(help="Sharp: Snell and Fresnel at the surface. Smooth: the index changes over a voxel.")
     ] = Boundary.sharp,
     resolution: Annotated[int, typer.Option(min=8, max=1024, help="Voxels along the longest edge of a mesh.")] = 128,
+    rounding: Annotated[
+        float,
+        typer.Option(
+            min=0.0, max=8.0, metavar="VOXELS", help="Round off facets and edges of a mesh by so many voxels."
+        ),
+    ] = 1.5,
     floor: Annotated[Floor, typer.Option(help="What a mesh stands on.")] = Floor.checker,
     up: Annotated[Up, typer.Option(help="The axis that points up in the mesh file; CAD programs like z.")] = Up.y,
     scale: Annotated[
@@ -141,12 +148,12 @@ def render(
 
     A mesh is placed on a floor in a studio, with the camera set so that all of it is seen; an open mesh is closed by
     the generalised winding number. --medium, --dispersion, --boundary, --resolution,
-    --floor, --up and --scale are for meshes; the other
+    --rounding, --floor, --up and --scale are for meshes; the other
     options also change what a scene file says.
     """
     wish = Wish(
-        size, samples, medium, dispersion, boundary.value, resolution, floor.value, up.value, scale, environment,
-        camera, target, fov, exposure, tone_mapping and tone_mapping.value,
+        size, samples, medium, dispersion, boundary.value, resolution, rounding, floor.value, up.value, scale,
+        environment, camera, target, fov, exposure, tone_mapping and tone_mapping.value,
     )  # fmt: skip
     check_output(output, PICTURES)
     is_scene = _is_scene(source)
@@ -244,7 +251,7 @@ def _scene_of_mesh(source: Path, wish: Wish, bar: Bar) -> tuple[Scene, str]:
     with blaming(source, "mesh", "vertices", "faces"):
         body = RefractiveVolume.from_mesh(
             (wish.scale * mesh.vertices, mesh.faces), medium, wish.resolution, progress=bar.step("filling the mesh"),
-            boundary=wish.boundary, dispersion=wish.dispersion, rotation=rotation,
+            boundary=wish.boundary, dispersion=wish.dispersion, rotation=rotation, rounding_voxels=wish.rounding,
         )  # fmt: skip
     scene = scene_around(body, vertices, camera, wish.environment or "studio", wish.floor)
     z, y, x = body.volume.shape

@@ -18,6 +18,7 @@ from .sampling import Extent, FieldFunction, box_edges, check_resolution, check_
 #: Helium d line: the wavelength at which a field without channels is meant.
 LAMBDA_MAIN_NM = 587.56
 MOST_REGIONS = 4
+HIGHEST_INDEX = 100.0
 
 MediumLike = Medium | str | float
 Voxels = npt.NDArray[np.float32]
@@ -212,6 +213,7 @@ class Volume:
         resolution: int,
         margin_voxels: int = 3,
         ambient_n: float = 1.0,
+        rounding_voxels: float = 0.0,
         progress: Callable[[float], None] | None = None,
     ) -> tuple[Volume, tuple[float, float, float]]:
         """A body bounded by a triangle mesh, in cubic voxels around it (see `voxelise.signed_distance`).
@@ -222,17 +224,21 @@ class Volume:
         faces : (F, 3).
         resolution : voxels along the longest edge, margins included.
         margin_voxels : empty voxels around the mesh on each side.
+        rounding_voxels : standard deviation of a Gaussian that the distances are blurred by, 0 to 8: rounds off the
+            facets of a coarse mesh, and its edges. A blurred distance never exceeds that to the blurred surface.
 
         Returns
         -------
         The volume, and where its centre lies in the mesh's coordinates (x, y, z).
         """
+        from .smoothing import gaussian
         from .voxelise import cleaned, signed_distance
 
         points, triangles = cleaned(vertices, faces)
         used = points[np.unique(triangles)]
         low, high = used.min(axis=0), used.max(axis=0)
         check_resolution(resolution)
+        blur = _rounding(rounding_voxels)
         if resolution <= 2 * margin_voxels + 1 or margin_voxels < 0:
             raise SceneError("resolution", f"is {resolution} with margins of {margin_voxels} voxels")
         voxel = float((high - low).max()) / (resolution - 2 * margin_voxels)
@@ -240,14 +246,17 @@ class Volume:
         centre = 0.5 * (low + high)
         shape = (int(count[2]), int(count[1]), int(count[0]))
         sdf = signed_distance(points, triangles, shape, centre - 0.5 * (count - 1) * voxel, voxel, progress)
+        sdf = gaussian(sdf, blur)
         if not (sdf < 0.0).any():
             raise SceneError("mesh", "encloses no voxel centre", "close it, thicken it, or use a finer resolution")
         x, y, z = (float(c) * voxel for c in count)
         volume = cls((x, y, z), ambient_n, regions=(Region(sdf, media.resolve(medium)),))
         return volume, (float(centre[0]), float(centre[1]), float(centre[2]))
 
-    def rasterised(self) -> Volume:
+    def rasterised(self, by_channel: bool = True) -> Volume:
         """The same matter as voxel fields, for the smooth boundary model; a volume of arrays is returned as is.
+
+        by_channel : an index for each colour channel where the media disperse, else the one at the main wavelength.
 
         A voxel is covered by `clamp(0.5 - sdf / h, 0, 1)`, h the mean voxel edge: the covered share of a cube cut by a
         plane parallel to a face. Of what earlier regions leave uncovered, each takes its share, so two
@@ -255,11 +264,13 @@ class Volume:
         """
         if not self.regions:
             return self
-        channels = 3 if self.is_dispersive else 1
+        channels = 3 if self.is_dispersive and by_channel else 1
         delta = np.zeros((*self.shape, channels))
         absorption, emission = np.zeros((*self.shape, 3)), np.zeros((*self.shape, 3))
         free = np.ones(self.shape)
         graded = None if self.delta_n is None else self.delta_n.reshape(*self.shape, -1).astype(np.float64)
+        if graded is not None and graded.shape[3] > channels:
+            graded = graded[..., 1:2]  # green, the nearest of the three to the main wavelength
         for number, region in enumerate(self.regions):
             covered = np.clip(0.5 - region.sdf.astype(np.float64) / float(np.mean(self.voxel_m)), 0.0, 1.0)
             share = np.minimum(covered, free)[..., None]
@@ -296,6 +307,12 @@ _CHANNELS: dict[str, int | None] = {
     "emission": 3,
     "opaque": 4,
 }
+
+
+def _rounding(voxels: float) -> float:
+    if isinstance(voxels, bool) or not isinstance(voxels, int | float | np.number) or not 0.0 <= voxels <= 8.0:
+        raise SceneError("rounding_voxels", f"is {voxels!r}", "use 0 to 8 voxels")
+    return float(voxels)
 
 
 def _region_index(medium: Medium, channels: int) -> npt.NDArray[np.float64]:
@@ -352,6 +369,8 @@ def _voxels(
 def _check_ranges(volume: Volume) -> None:
     if volume.delta_n is not None and float(volume.delta_n.min()) + volume.ambient_n <= 0.0:
         raise SceneError("delta_n", "makes the index 0 or less")
+    if volume.delta_n is not None and float(volume.delta_n.max()) + volume.ambient_n > HIGHEST_INDEX:
+        raise SceneError("n", f"reaches {float(volume.delta_n.max()) + volume.ambient_n:g}", "no matter is above 100")
     for name in ("absorption", "scattering", "emission"):
         values = getattr(volume, name)
         if values is not None and float(values.min()) < 0.0:

@@ -35,7 +35,7 @@ class MeshData:
     base_color : (3,) linear Rec.709 of the material, or None. When several materials are merged it is
         their mean by number of faces.
     base_color_map : (H, W, 3 or 4) float32 linear, row 0 at the top, or None. Kept only when the whole
-        mesh shares one map, and only when Pillow is installed, through which trimesh reads maps.
+        mesh shares one map.
     name : the file's stem.
     """
 

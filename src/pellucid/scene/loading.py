@@ -115,7 +115,8 @@ def _volume(part: Any, folder: Path) -> RefractiveVolume:
     if "center_m" in part.model_fields_set:
         look["center_m"] = part.center_m
     if isinstance(part, schema.VolumeOfMesh):
-        settings = {name: getattr(part, name) for name in ("resolution", "ambient_n") if name in part.model_fields_set}
+        names = {"resolution", "ambient_n", "rounding_voxels"} & part.model_fields_set
+        settings = {name: getattr(part, name) for name in names}
         return RefractiveVolume.from_mesh(folder / part.mesh, substance(part.medium), **settings, **look)
     if isinstance(part, schema.VolumeOfArray):
         return _volume_of_array(part, folder, look)

@@ -97,6 +97,7 @@ class RefractiveVolume(SceneObject):
         resolution: int = 128,
         ambient_n: float = 1.0,
         *,
+        rounding_voxels: float = 0.0,
         progress: Callable[[float], None] | None = None,
         **placement: Any,
     ) -> Self:
@@ -109,6 +110,7 @@ class RefractiveVolume(SceneObject):
         medium : name, Medium or constant index.
         resolution : voxels along the longest edge of the box.
         ambient_n : index around the body.
+        rounding_voxels : 0 to 8; rounds off facets and edges, for coarse meshes of curved things.
         progress : called with the share of the voxels that is done, 0 to 1.
         placement : any other field of the class, such as ``boundary`` or ``position``.
 
@@ -124,10 +126,17 @@ class RefractiveVolume(SceneObject):
         vertices, faces, recipe = _triangles(mesh)
         with _blaming(mesh):
             volume, center = Volume.from_mesh(
-                vertices, faces, substance, resolution, ambient_n=ambient_n, progress=progress
+                vertices,
+                faces,
+                substance,
+                resolution,
+                ambient_n=ambient_n,
+                rounding_voxels=rounding_voxels,
+                progress=progress,
             )
         if recipe is not None and "center_m" not in options:
             made = {**recipe, "medium": substance, "resolution": resolution, "ambient_n": volume.ambient_n}
+            made |= {"rounding_voxels": rounding_voxels} if rounding_voxels else {}
             options["origin"] = Origin(made)
         return cls(volume, **({"center_m": center} | options))
 

@@ -169,6 +169,7 @@ class VolumeOfMesh(VolumeBase):
     medium: Substance
     resolution: StrictInt = UNSET
     ambient_n: Number = UNSET
+    rounding_voxels: Number = UNSET
 
 
 class VolumeOfArray(VolumeBase):

@@ -131,7 +131,7 @@ def _prepare_sharp(volume: Volume, gradient: str, method: str, dispersion: bool)
 
 
 def _prepare_smooth(volume: Volume, smoothing: float, gradient: str, method: str, dispersion: bool) -> Prepared:
-    raw = volume.rasterised()
+    raw = volume.rasterised(by_channel=dispersion)
     assert raw.delta_n is not None
     deltas = _channels(raw.delta_n, dispersion and raw.is_dispersive)
     pad = _padding(deltas, smoothing)
