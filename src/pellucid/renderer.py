@@ -85,7 +85,7 @@ class Renderer:
         timings = {"prepare": 1e3 * (clock.perf_counter() - begun)}
         mean = self._accumulate(scene, samples, timer, timings, progress)
         radiance, depth = mean[..., :3].copy(), self._first_depth
-        self._finish.prepare(scene.exposure, scene.tone_mapping)
+        self._finish.prepare(scene.exposure, scene.tone_mapping, scene.glow)
         encoder = self.device.wgpu.create_command_encoder()
         self._finish.draw(encoder, self._targets.color, self._display.create_view(), timer)
         self._submit(encoder, timer, timings)

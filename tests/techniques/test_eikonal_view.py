@@ -310,3 +310,11 @@ def test_glass_that_stands_on_a_floor_has_no_speckle(renderer, boundary):
         np.mean(np.abs(picture(height) - picture(height + 1e-5)).max(axis=2) > 0.05) for height in (0.04, 0.06)
     )
     assert touching < 1.2 * clear < 0.02, f"{touching:.1%} of the pixels change, {clear:.1%} of a cube that hovers"
+
+
+def test_glow_spreads_light_on_the_screen_and_leaves_radiance_alone(renderer):
+    lamp = pl.Mesh.sphere(0.01, base_color=(0.0, 0.0, 0.0), specular=0.0, emission=(50.0, 50.0, 50.0))
+    dark = scene(lamp, environment=pl.Environment.constant((0.0, 0.0, 0.0)))
+    plain, glowing = renderer.render(dark, SIZE), renderer.render(dark.replace(glow=0.1), SIZE)
+    assert (plain.radiance == glowing.radiance).all()
+    assert (glowing.srgb() > plain.srgb()).mean() > 0.5

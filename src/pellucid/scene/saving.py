@@ -78,7 +78,7 @@ class Sidecars:
 
 def describe_scene(scene: Scene, beside: Sidecars) -> dict[str, Any]:
     """The scene as plain dictionaries, lists, numbers and strings; defaults are left out."""
-    described: dict[str, Any] = _stated(scene, ("exposure", "tone_mapping"))
+    described: dict[str, Any] = _stated(scene, ("exposure", "tone_mapping", "glow"))
     described["camera"] = _stated(scene.camera, [f.name for f in dataclasses.fields(scene.camera)])
     described["environment"] = _environment(scene.environment, beside)
     described["lights"] = [_light(light, i) for i, light in enumerate(scene.lights)]

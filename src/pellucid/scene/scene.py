@@ -27,6 +27,8 @@ class Scene(Value):
     objects : Mesh, RefractiveVolume and the other things that can be drawn.
     exposure : factor on the radiance before tone mapping, > 0.
     tone_mapping : ``"agx"``, ``"reinhard"``, ``"aces"``, ``"khronos"`` or ``"linear"``.
+    glow : share of the light that a lens would scatter around bright things, 0 to 1; 0.02 to 0.1 look like one.
+        In the picture for the screen only: radiance stays as it is.
 
     Raises
     ------
@@ -39,6 +41,7 @@ class Scene(Value):
     objects: Sequence[SceneObject] = ()
     exposure: float = 1.0
     tone_mapping: str = "agx"
+    glow: float = 0.0
 
     def __post_init__(self) -> None:
         _check_kind("scene.camera", self.camera, Camera, "give a Camera")
@@ -49,6 +52,7 @@ class Scene(Value):
             objects=_members("scene.objects", self.objects, SceneObject, _OBJECT_REMEDY),
             exposure=checks.number("scene.exposure", self.exposure, low=0.0, exclusive=True),
             tone_mapping=checks.choice("scene.tone_mapping", self.tone_mapping, TONE_MAPPINGS),
+            glow=checks.number("scene.glow", self.glow, low=0.0, high=1.0),
         )
 
 

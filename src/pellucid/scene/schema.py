@@ -262,6 +262,7 @@ class SceneFile(Model):
     objects: list[ObjectFile] = []
     exposure: Number = UNSET
     tone_mapping: StrictStr = UNSET
+    glow: Number = UNSET
 
 
 KNOWN_FIELDS = tuple(
