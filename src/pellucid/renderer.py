@@ -25,6 +25,9 @@ from pellucid.techniques.opaque.passes import Opaque
 # Which technique draws which kind of object. Adding one takes a folder and a line here.
 TECHNIQUES: dict[type, Any] = {RefractiveVolume: EikonalTechnique}
 
+# Of a picture of radiance in one buffer, as it is summed and read back.
+BYTES_PER_PIXEL = 16
+
 
 class Renderer:
     """Renders scenes on one device, and keeps there what the next frame can use again.
@@ -103,6 +106,10 @@ class Renderer:
             raise SceneError("size", f"is {size!r}", "give (width, height) in whole pixels") from None
         if not (1 <= width <= limit and 1 <= height <= limit):
             raise SceneError("size", f"is {width} x {height}", f"use 1 to {limit} pixels a side on this device")
+        most = self.device.limits["max-storage-buffer-binding-size"] // BYTES_PER_PIXEL
+        if width * height > most:
+            reason = f"{width} x {height} are {width * height / 1e6:.1f} million pixels"
+            raise SceneError("size", reason, f"this device holds {most / 1e6:.1f} million; render it in parts")
         if isinstance(samples, bool) or not isinstance(samples, int | np.integer) or not 1 <= samples <= 65536:
             raise SceneError("samples", f"is {samples!r}", "use a whole number from 1 to 65536")
         return width, height

@@ -264,6 +264,7 @@ def test_more_samples_smooth_the_outline_and_keep_the_mean(renderer, ball):
         ((0, 10), 1, "size"),
         ((10, 100_000), 1, "size"),
         ("large", 1, "size"),
+        ((16000, 16000), 1, "million pixels"),
         ((8, 8), 0, "samples"),
         ((8, 8), 1.5, "samples"),
     ],
