@@ -105,11 +105,14 @@ def render(
     ] = Boundary.sharp,
     resolution: Annotated[int, typer.Option(min=8, max=1024, help="Voxels along the longest edge of a mesh.")] = 128,
     rounding: Annotated[
-        float,
+        float | None,
         typer.Option(
-            min=0.0, max=8.0, metavar="VOXELS", help="Round off facets and edges of a mesh by so many voxels."
+            min=0.0,
+            max=8.0,
+            metavar="VOXELS",
+            help="Round off facets and edges of a mesh; 0 keeps them. [dim]\\[default: 1.2 % of its longest edge][/dim]",
         ),
-    ] = 1.5,
+    ] = None,
     floor: Annotated[Floor, typer.Option(help="What a mesh stands on.")] = Floor.checker,
     up: Annotated[Up, typer.Option(help="The axis that points up in the mesh file; CAD programs like z.")] = Up.y,
     scale: Annotated[
@@ -152,8 +155,8 @@ def render(
     options also change what a scene file says.
     """
     wish = Wish(
-        size, samples, medium, dispersion, boundary.value, resolution, rounding, floor.value, up.value, scale,
-        environment, camera, target, fov, exposure, tone_mapping and tone_mapping.value,
+        size, samples, medium, dispersion, boundary.value, resolution, _rounding(rounding, resolution),
+        floor.value, up.value, scale, environment, camera, target, fov, exposure, tone_mapping and tone_mapping.value,
     )  # fmt: skip
     check_output(output, PICTURES)
     is_scene = _is_scene(source)
@@ -257,6 +260,11 @@ def _scene_of_mesh(source: Path, wish: Wish, bar: Bar) -> tuple[Scene, str]:
     z, y, x = body.volume.shape
     story = f"{source.name} in {medium.name}, {len(mesh.faces):,} triangles in {x} x {y} x {z} voxels, {wish.boundary}"
     return scene.replace(**_look(wish)), story
+
+
+def _rounding(voxels: float | None, resolution: int) -> float:
+    """In voxels: as asked, or 1.5 of 128, so that a coarse try keeps the shape of the fine picture."""
+    return min(8.0, 1.5 * resolution / 128) if voxels is None else voxels
 
 
 def _check_length(source: Path, vertices: np.ndarray) -> None:
