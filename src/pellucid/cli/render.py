@@ -110,7 +110,7 @@ def render(
             min=0.0,
             max=8.0,
             metavar="VOXELS",
-            help="Round off facets and edges of a mesh; 0 keeps them. [dim]\\[default: 1.2 % of its longest edge][/dim]",
+            help="Round off facets and edges; 0 keeps them. [dim]\\[default: 1.2 % of its longest edge][/dim]",
         ),
     ] = None,
     floor: Annotated[Floor, typer.Option(help="What a mesh stands on.")] = Floor.checker,
