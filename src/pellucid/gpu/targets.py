@@ -22,10 +22,6 @@ class Targets:
         self.color_view = self.color.create_view()
         self.depth_view = self.depth.create_view()
 
-    def read_color(self) -> np.ndarray:
-        """(H, W, 3) float32 radiance."""
-        return self.device.read_texture(self.color)[..., :3].copy()
-
     def read_depth(self) -> np.ndarray:
         """(H, W) float32 depth-buffer values, 0 where nothing was drawn."""
         return self.device.read_texture(self.depth)[..., 0]

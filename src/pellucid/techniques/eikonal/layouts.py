@@ -62,8 +62,6 @@ TraceRay = struct(
     ]
 )
 
-MISSED, LEFT, OPAQUE, EXHAUSTED, INTERFACE, PAUSED = range(6)
-
 
 def blank_params() -> np.ndarray:
     """A zeroed VolumeParams record."""
