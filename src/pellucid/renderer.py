@@ -86,15 +86,14 @@ class Renderer:
         self._prepare(scene, (width, height))
         self.device.wait()
         timings = {"prepare": 1e3 * (clock.perf_counter() - begun)}
-        mean = self._accumulate(scene, samples, timer, timings, progress)
-        radiance, depth = mean[..., :3].copy(), self._first_depth
+        mean, depth = self._accumulate(scene, samples, timer, timings, progress)
         self._finish.prepare(scene.exposure, scene.tone_mapping, scene.glow)
         encoder = self.device.wgpu.create_command_encoder()
         self._finish.draw(encoder, self._targets.color, self._display.create_view(), timer)
         self._submit(encoder, timer, timings)
         display = self.device.read_texture(self._display)[..., :3].copy()
         timings["total"] = 1e3 * (clock.perf_counter() - begun)
-        return Frame(radiance, _metres(depth, scene.camera), display, timings)
+        return Frame(mean[..., :3].copy(), _metres(depth, scene.camera), display, timings)
 
     def _check(self, scene: Scene, size: tuple[int, int], samples: int) -> tuple[int, int]:
         if not isinstance(scene, Scene):
@@ -136,10 +135,12 @@ class Renderer:
         timer: PassTimer,
         timings: dict[str, float],
         progress: Callable[[float], None] | None,
-    ) -> np.ndarray:
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """The mean of the samples, which is left in the colour target too, and the depth of the first."""
         targets = self._targets
         assert targets is not None
         total = Accumulator(self.device, targets.size) if samples > 1 else None
+        depth = np.empty(0)
         for index in range(samples):
             offset = _jitter(index) if samples > 1 else (0.0, 0.0)
             self.surroundings.set_camera(scene.camera, targets.size, offset, index)
@@ -149,14 +150,14 @@ class Renderer:
                 total.add(encoder, targets.color, timer)
             self._submit(encoder, timer, timings)
             if index == 0:
-                self._first_depth = targets.read_depth()
+                depth = targets.read_depth()
             if progress is not None:
                 progress((index + 1) / samples)
         if total is None:
-            return self.device.read_texture(targets.color)
+            return self.device.read_texture(targets.color), depth
         mean = total.mean()
         self.device.write_texture(targets.color, mean)
-        return mean
+        return mean, depth
 
     def _draw(self, encoder: Any, scene: Scene, targets: Targets, timer: PassTimer) -> None:
         """Illuminate, opaque, refractive (far to near): everything up to the linear picture."""

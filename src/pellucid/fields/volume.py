@@ -12,11 +12,10 @@ import numpy.typing as npt
 from pellucid import media
 from pellucid.errors import SceneError
 from pellucid.media import Medium
+from pellucid.optics.dispersion import LAMBDA_D_NM
 
 from .sampling import Extent, FieldFunction, box_edges, check_resolution, check_size, sampled, sampling
 
-#: Helium d line: the wavelength at which a field without channels is meant.
-LAMBDA_MAIN_NM = 587.56
 MOST_REGIONS = 4
 HIGHEST_INDEX = 100.0
 
@@ -316,7 +315,7 @@ def _rounding(voxels: float) -> float:
 
 
 def _region_index(medium: Medium, channels: int) -> npt.NDArray[np.float64]:
-    return np.asarray(medium.n_rgb if channels == 3 else [float(medium.n(LAMBDA_MAIN_NM))], dtype=np.float64)
+    return np.asarray(medium.n_rgb if channels == 3 else [float(medium.n(LAMBDA_D_NM))], dtype=np.float64)
 
 
 def _common_shape(volume: Volume) -> tuple[int, int, int]:

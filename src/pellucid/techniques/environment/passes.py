@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from pellucid.gpu.kernel import RenderPass
+from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT
 
 if TYPE_CHECKING:
     from pellucid.gpu import Device
@@ -24,8 +25,8 @@ class Sky:
         self._pass = RenderPass(
             device,
             "techniques/environment/shaders/sky",
-            targets=("rgba32float",),
-            depth="depth32float",
+            targets=(COLOR_FORMAT,),
+            depth=DEPTH_FORMAT,
             depth_compare="greater-equal",  # at depth 0 this holds only where nothing was drawn
             depth_write=False,
         )

@@ -7,14 +7,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellucid.gpu.kernel import RenderPass
+from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT
 
 if TYPE_CHECKING:
     from pellucid.gpu import Device
     from pellucid.gpu.timing import PassTimer
     from pellucid.surroundings import Surroundings
-
-COLOR_FORMAT = "rgba32float"
-DEPTH_FORMAT = "depth32float"
 
 
 class Opaque:
