@@ -104,15 +104,12 @@ class EikonalTechnique:
 
     def _write_parameters(self, item: RefractiveVolume, resident: _Resident, surroundings: Surroundings) -> None:
         world = item.object_to_world()
-        scale = float(np.cbrt(np.linalg.det(world[:3, :3])))
         corners = _corners(resident.prepared) @ world[:3, :3].T + world[:3, 3]
         low, high = corners.min(axis=0), corners.max(axis=0)
         meets = any((lo <= high).all() and (hi >= low).all() for lo, hi in surroundings.mesh_bounds_ws)
         resident.meets_meshes = meets
         for channel, uniform in enumerate(resident.uniforms):
-            record = parameters(
-                resident.prepared, resident.textures, channel, item.quality, world, scale, meets_meshes=meets
-            )
+            record = parameters(resident.prepared, resident.textures, channel, item.quality, world, meets_meshes=meets)
             self.device.write(uniform, record.reshape(1))
 
     def draw(

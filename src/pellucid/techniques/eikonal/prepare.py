@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
@@ -104,11 +105,11 @@ def _prepare_sharp(volume: Volume, gradient: str, method: str, dispersion: bool)
     spread = dispersion and volume.is_dispersive
     fields = [f for f in (volume.absorption, volume.emission, volume.opaque) if f is not None] if graded else []
     deltas: Sequence[np.ndarray | None] = _channels(volume.delta_n, spread) if graded else [None] * (3 if spread else 1)
+    straight = None if graded else _distance_to_opaque(volume)
     channels = []
     for i, delta in enumerate(deltas):
         indices = tuple(float(r.medium.n_rgb[i] if spread else r.medium.n(LAMBDA_D_NM)) for r in regions)
-        graded_force = None if delta is None else _force(delta, fields, volume, gradient, method)
-        force = _distance_to_opaque(volume) if delta is None else graded_force
+        force = straight if delta is None else _force(delta, fields, volume, gradient, method)
         channels.append(Channel(force, delta, indices))
     voxel = min(volume.voxel_m)
     distance = np.stack([r.sdf / voxel for r in regions], axis=-1) if regions else None
@@ -180,24 +181,17 @@ def _closed_at_box(volume: Volume) -> Volume:
         sparse=True,
     )
     outside_box = np.maximum(np.maximum(x, y), z)
-
-    def extended(field: np.ndarray | None) -> np.ndarray | None:
-        if field is None:
-            return None
-        return np.pad(field, [(BOX_PAD, BOX_PAD)] * 3 + [(0, 0)] * (field.ndim - 3), mode="edge")
-
     regions = []
     for region in volume.regions:
         distance = np.pad(region.sdf, BOX_PAD, mode="edge")
         regions.append(replace(region, sdf=np.maximum(distance, outside_box).astype(np.float32)))
     fields = ("delta_n", "absorption", "scattering", "anisotropy", "emission")
     margin = np.array(volume.voxel_m) * 2 * BOX_PAD
-    opaque = None if volume.opaque is None else np.pad(volume.opaque, [(BOX_PAD, BOX_PAD)] * 3 + [(0, 0)])
     return volume.replace(
         extent_m=tuple(np.array(volume.extent_m) + margin),
         regions=tuple(regions),
-        opaque=opaque,
-        **{name: extended(getattr(volume, name)) for name in fields},
+        opaque=_padded(volume.opaque, BOX_PAD),
+        **{name: _padded(getattr(volume, name), BOX_PAD, "edge") for name in fields},
     )
 
 
@@ -232,10 +226,11 @@ def _padding(deltas: Sequence[np.ndarray], smoothing: float) -> int:
     return 0
 
 
-def _padded(field: np.ndarray | None, pad: int) -> np.ndarray | None:
+def _padded(field: np.ndarray | None, pad: int, mode: Literal["constant", "edge"] = "constant") -> np.ndarray | None:
+    """With `pad` voxels more on every side: nothing ("constant") or what is at the border ("edge")."""
     if field is None or pad == 0:
         return field
-    return np.pad(field, [(pad, pad)] * 3 + [(0, 0)] * (field.ndim - 3))
+    return np.pad(field, [(pad, pad)] * 3 + [(0, 0)] * (field.ndim - 3), mode=mode)
 
 
 def _force(

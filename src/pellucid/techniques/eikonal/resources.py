@@ -18,9 +18,8 @@ BOX_MARGIN_VOXELS = 1.5
 # optical momentum; the chord then departs from the arc by about 1 % of its length.
 PAUSE_TURN = 0.1
 FAR = 1e30
-MOST_HALF = (
-    65504.0  # the largest 16-bit float; an extinction of that many per metre is black in a tenth of a millimetre
-)
+# The largest 16-bit float; an extinction of that many per metre is black in a tenth of a millimetre.
+MOST_HALF = 65504.0
 # Rays that one pixel may send into the surroundings; more of them see the environment only.
 LOOKS_PER_PIXEL = 8
 
@@ -104,16 +103,20 @@ def constants_of(prepared: Prepared, quality: Quality) -> dict[str, float]:
     }
 
 
+def scale_of(world_from_object: np.ndarray) -> float:
+    """World metres per object metre of a placement (4, 4), whose scale is uniform."""
+    return float(np.cbrt(np.linalg.det(world_from_object[:3, :3])))
+
+
 def parameters(
     prepared: Prepared,
     textures: VolumeTextures,
     channel: int,
     quality: Quality,
     world_from_object: np.ndarray,
-    scale: float,
     meets_meshes: bool = False,
 ) -> np.ndarray:
-    """The VolumeParams record of one channel. world_from_object : (4, 4); scale : world metres per object metre."""
+    """The VolumeParams record of one channel. world_from_object : (4, 4) float64, metres."""
     out = blank_params()
     half = 0.5 * np.array(prepared.extent_m)
     by_box = prepared.sharp and prepared.distance is None
@@ -124,7 +127,7 @@ def parameters(
     out["half_extent"] = half
     out["ambient_n"] = prepared.ambient_n
     out["proxy_half"] = half + (BOX_MARGIN_VOXELS * prepared.voxel if by_box else 0.0)
-    out["scale"] = scale
+    out["scale"] = scale_of(world_from_object)
     out["voxel"] = prepared.voxel
     out["step"] = quality.step_voxels * prepared.voxel
     out["force_scale"] = textures.force_scales[channel]

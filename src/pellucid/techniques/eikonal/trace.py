@@ -13,7 +13,7 @@ from pellucid.scene.quality import Quality
 from pellucid.scene.refractive_volume import RefractiveVolume
 from pellucid.techniques.eikonal.layouts import TraceParams, TraceRay
 from pellucid.techniques.eikonal.prepare import Prepared, prepare
-from pellucid.techniques.eikonal.resources import VolumeTextures, constants_of, parameters, upload
+from pellucid.techniques.eikonal.resources import VolumeTextures, constants_of, parameters, scale_of, upload
 
 STATUS = ("missed", "left", "opaque", "exhausted")
 
@@ -57,8 +57,8 @@ def trace(
     prepared, textures = _resident(device, volume, quality, dispersion=channel is not None)
     row = channel if channel is not None and prepared.dispersive else 0
     world = volume.object_to_world()
-    scale = float(np.cbrt(np.linalg.det(world[:3, :3])))
-    params = parameters(prepared, textures, row, quality, world, scale)
+    scale = scale_of(world)
+    params = parameters(prepared, textures, row, quality, world)
     inverse = np.linalg.inv(world)
     x_os = x @ inverse[:3, :3].T + inverse[:3, 3]
     d_os = d @ (inverse[:3, :3].T * scale)

@@ -17,7 +17,7 @@ struct Walk {
     steps: u32,
     radius: f32,          // object metres around x in which nothing changes
     slope2: f32,          // |grad n|^2 met last, 1/m^2
-    region: u32,          // owner of x in a sharp volume; region_count outside all of them
+    region: u32,          // owner of x in a sharp volume; AMBIENT outside all of them
     signs: u32,           // bit k: x is inside region k
 }
 
