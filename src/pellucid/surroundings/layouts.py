@@ -89,6 +89,30 @@ Light = struct(
     ]
 )
 
+OUT_CAUSTIC = 0
+OUT_BLOCKED = 1
+
+# A bundle of rays that leaves a volume: four corner rays and the flux that flows between them. Corners in the order
+# (0, 0), (1, 0), (0, 1), (1, 1) of the bundle. OUT_CAUSTIC adds its light to what it lands on; OUT_BLOCKED is light
+# that would have passed had the volume not been there, its flux positive.
+OutPatch = struct(
+    [
+        ("corner_0", "vec3f"),  # metres, world space
+        ("kind", "u32"),
+        ("corner_1", "vec3f"),
+        ("pad_1", "u32"),
+        ("corner_2", "vec3f"),
+        ("pad_2", "u32"),
+        ("corner_3", "vec3f"),
+        ("pad_3", "u32"),
+        ("way_0", "vec3f"),  # unit directions in which the light goes
+        ("way_1", "vec3f"),
+        ("way_2", "vec3f"),
+        ("way_3", "vec3f"),
+        ("flux", "vec3f"),  # radiant power of the bundle
+    ]
+)
+
 QueryRay = struct([("origin", "vec3f"), ("t_max", "f32"), ("direction", "vec3f")])
 
 QueryHit = struct(
