@@ -37,8 +37,9 @@ VolumeParams = struct(
     ]
 )
 
-# The rectangle of the picture that one draw covers, and the channel that it is for (3: all of them).
-DrawParams = struct([("corner", "vec2u"), ("size", "vec2u"), ("channel", "u32")])
+# The rectangle of the picture that one draw covers, and what its colours are worth (wavelengths.py);
+# the first draw starts every pixel anew.
+DrawParams = struct([("corner", "vec2u"), ("size", "vec2u"), ("weights", "mat3x3f"), ("first", "u32")])
 
 # A ray that has left the refractive matter and still has to find out what it sees.
 LookRay = struct([("origin", "vec3f"), ("slot", "u32"), ("direction", "vec3f"), ("kind", "u32")])

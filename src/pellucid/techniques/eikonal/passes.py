@@ -1,6 +1,6 @@
 """The passes of the eikonal view renderer: volumes prepared once, then rays for the pixels that they cover.
 
-A dispersive volume is looked through three times, each time with the index of one channel and for that channel only.
+A dispersive volume is looked through once for each of its wavelengths, whose weighted colours add up to the picture.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT, Targets
 from pellucid.techniques.eikonal.layouts import DrawParams, LookCount, LookRay, VolumeParams
 from pellucid.techniques.eikonal.prepare import Prepared, prepare
 from pellucid.techniques.eikonal.resources import LOOKS_PER_PIXEL, VolumeTextures, constants_of, parameters, upload
+from pellucid.techniques.eikonal.wavelengths import draws_of
 
 if TYPE_CHECKING:
     from pellucid.scene import Camera, RefractiveVolume
     from pellucid.surroundings import Surroundings
 
-EVERY_CHANNEL = 3
 # A picture is drawn in bands of rows, so that the lists of waiting rays keep to 100 MB.
 BAND_PIXELS = 1 << 18
 
@@ -44,7 +44,7 @@ class _Resident:
     prepared: Prepared
     textures: VolumeTextures
     uniforms: list[Any]
-    draws: list[list[Any]]  # for each band of the picture one for each channel, the last for all at once
+    draws: list[list[Any]]  # for each band of the picture one for each wavelength
     meets_meshes: bool = False
 
 
@@ -129,8 +129,8 @@ class EikonalTechnique:
         bands = _bands(covered)
         self._reserve(max(width * height for _, _, width, height in bands))
         while len(resident.draws) < len(bands):
-            four = range(EVERY_CHANNEL + 1)
-            resident.draws.append([self.device.buffer(DrawParams.itemsize, "uniform", "draw") for _ in four])
+            each = resident.uniforms
+            resident.draws.append([self.device.buffer(DrawParams.itemsize, "uniform", "draw") for _ in each])
         for band, draws in zip(bands, resident.draws, strict=False):
             self._draw_band(encoder, item, resident, draws, band, targets, surroundings, timer)
 
@@ -159,22 +159,19 @@ class EikonalTechnique:
         surroundings: Surroundings,
         timer: Any,
     ) -> None:
-        """March, look, sum, for each channel; then put the band into the picture."""
+        """March, look, sum, for each wavelength; then put the band into the picture."""
         width, height = band[2:]
-        count = len(resident.uniforms)
-        # Red goes first and starts each pixel anew; without dispersion one draw serves every channel.
-        for channel in (0, 1, 2) if count == 3 else (EVERY_CHANNEL,):
-            own = channel % EVERY_CHANNEL
-            _write_draw(self.device, draws[channel], channel, band)
+        for number, (channel, weights) in enumerate(draws_of(resident.prepared)):
+            _write_draw(self.device, draws[number], band, weights, first=number == 0)
             shared = {
                 **surroundings.bindings,
                 **self._lists,
                 "screen_color": targets.color,
                 "screen_depth": targets.depth,
-                "draw": draws[channel],
+                "draw": draws[number],
             }
             encoder.copy_buffer_to_buffer(self._no_looks, 0, self._lists["look_queue"], 0, LookCount.itemsize)
-            volume = {**resident.textures.channels[own], "volume": resident.uniforms[own]}
+            volume = {**resident.textures.channels[channel], "volume": resident.uniforms[channel]}
             blocks = (-(-width // 8), -(-height // 8), 1)
             march = self._march_kernel(item, resident)
             march.run(blocks, {**shared, **volume}, encoder, timer, "eikonal march")
@@ -187,7 +184,7 @@ class EikonalTechnique:
             encoder,
             color=[targets.color_view],
             depth=targets.depth_view,
-            bindings={"draw": draws[channel], "picture": self._lists["picture"]},
+            bindings={"draw": draws[0], "picture": self._lists["picture"]},
             scissor=band,
             timer=timer,
             label="eikonal composite",
@@ -213,9 +210,10 @@ class EikonalTechnique:
         return self._kernels[key]
 
 
-def _write_draw(device: Device, buffer: Any, channel: int, band: Rectangle) -> None:
+def _write_draw(device: Device, buffer: Any, band: Rectangle, weights: np.ndarray, first: bool) -> None:
     record = np.zeros((), DrawParams)
-    record["corner"], record["size"], record["channel"] = band[:2], band[2:], channel
+    record["corner"], record["size"], record["first"] = band[:2], band[2:], first
+    record["weights"][:, :3] = weights.T  # columns
     device.write(buffer, record.reshape(1))
 
 

@@ -1,4 +1,4 @@
-// Adds to each pixel what its waiting rays have seen, and keeps the channel that this draw is for.
+// Adds to each pixel what its waiting rays have seen, and to the picture what that is worth at the wavelength of this draw.
 
 //!struct DrawParams from techniques.eikonal.layouts
 
@@ -16,13 +16,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var value = drawn[index];
     let used = u32(look_values[index].w);
     for (var k = 0u; k < used; k++) { value += vec4f(look_values[k * pixels + index].rgb, 0.0); }
-    // Another channel may show the volume where this one does not.
+    // Another wavelength may show the volume where this one does not.
     let at = draw.corner + vec2u(index % draw.size.x, index / draw.size.x);
     if (value.w < 0.0) { value = vec4f(textureLoad(screen_color, at, 0).rgb, value.w); }
-    switch draw.channel {
-        case 0u: { picture[index] = vec4f(value.x, 0.0, 0.0, value.w); }
-        case 1u: { picture[index].y = value.y; picture[index].w = max(picture[index].w, value.w); }
-        case 2u: { picture[index].z = value.z; picture[index].w = max(picture[index].w, value.w); }
-        default: { picture[index] = value; }
-    }
+    let share = draw.weights * value.rgb;
+    let before = picture[index];
+    let goes_on = draw.first == 0u;
+    picture[index] = vec4f(share + select(vec3f(0.0), before.rgb, goes_on), select(value.w, max(before.w, value.w), goes_on));
 }

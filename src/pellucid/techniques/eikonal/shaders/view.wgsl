@@ -22,7 +22,6 @@ struct ViewRay {
     meets: bool,
 }
 
-const EVERY_CHANNEL = 3u;
 const UNSEEN = -1.0;
 
 // rgb: radiance; w: value for the depth buffer, or UNSEEN where the picture stays as it is
