@@ -13,6 +13,7 @@ import numpy as np
 
 from pellucid.gpu import ComputeKernel, Device, RenderPass
 from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT, Targets
+from pellucid.techniques.eikonal.bodies import Body
 from pellucid.techniques.eikonal.layouts import DrawParams, LookCount, LookRay, VolumeParams
 from pellucid.techniques.eikonal.prepare import Prepared, prepare
 from pellucid.techniques.eikonal.resources import LOOKS_PER_PIXEL, VolumeTextures, constants_of, parameters, upload
@@ -37,25 +38,19 @@ class _Loaded:
     textures: VolumeTextures
 
 
-@dataclass
-class _Resident:
-    """One placed object: its volume and its own parameters."""
-
-    prepared: Prepared
-    textures: VolumeTextures
-    uniforms: list[Any]
-    draws: list[list[Any]]  # for each band of the picture one for each wavelength
-    meets_meshes: bool = False
-
-
 class EikonalTechnique:
-    """Draws `RefractiveVolume` objects."""
+    """Draws `RefractiveVolume` objects.
+
+    Attributes
+    ----------
+    bodies : what was prepared last.
+    """
 
     def __init__(self, device: Device) -> None:
         self.device = device
         self._loaded: dict[Any, _Loaded] = {}
-        self._residents: list[_Resident] = []
-        self._drawn: dict[int, _Resident] = {}
+        self.bodies: list[Body] = []
+        self._drawn: dict[int, Body] = {}
         self._kernels: dict[Any, ComputeKernel] = {}
         self._no_looks = device.buffer(np.array([(0, 1, 1, 0)], LookCount), "storage", "no looks")
         self._lists: dict[str, Any] = {}
@@ -78,18 +73,17 @@ class EikonalTechnique:
         """Make every volume resident, drop those that are gone, and write the parameters of each object."""
         wanted = {_key(item) for item in objects}
         self._loaded = {key: volume for key, volume in self._loaded.items() if key in wanted}
-        residents = []
+        bodies = []
         for number, item in enumerate(objects):
             key = _key(item)
             if key not in self._loaded:
                 self._loaded[key] = self._load(item)
-            before = self._residents[number] if number < len(self._residents) else None
-            same = before is not None and before.textures is self._loaded[key].textures
-            resident = before if before is not None and same else self._place(self._loaded[key])
-            self._write_parameters(item, resident, surroundings)
-            residents.append(resident)
-        self._residents = residents
-        self._drawn = {id(item): resident for item, resident in zip(objects, residents, strict=True)}
+            before = self.bodies[number] if number < len(self.bodies) else None
+            body = self._place(item, self._loaded[key], before)
+            self._write_parameters(body, surroundings)
+            bodies.append(body)
+        self.bodies = bodies
+        self._drawn = {id(item): body for body in bodies for item in body.objects}
 
     def _load(self, item: RefractiveVolume) -> _Loaded:
         prepared = prepare(
@@ -97,19 +91,24 @@ class EikonalTechnique:
         )
         return _Loaded(item.volume, prepared, upload(self.device, prepared))
 
-    def _place(self, volume: _Loaded) -> _Resident:
-        count = len(volume.prepared.channels)
-        uniforms = [self.device.buffer(VolumeParams.itemsize, "uniform", "volume") for _ in range(count)]
-        return _Resident(volume.prepared, volume.textures, uniforms, [])
+    def _place(self, item: RefractiveVolume, volume: _Loaded, before: Body | None) -> Body:
+        """The body of an object; buffers of the one before are used again if it has the same volume."""
+        placed = Body((item,), volume.prepared, volume.textures, [], item.object_to_world(), item.quality)
+        if before is not None and before.textures is volume.textures:
+            placed.uniforms, placed.draws = before.uniforms, before.draws
+        else:
+            each = volume.prepared.channels
+            placed.uniforms = [self.device.buffer(VolumeParams.itemsize, "uniform", "volume") for _ in each]
+        return placed
 
-    def _write_parameters(self, item: RefractiveVolume, resident: _Resident, surroundings: Surroundings) -> None:
-        world = item.object_to_world()
-        corners = _corners(resident.prepared) @ world[:3, :3].T + world[:3, 3]
+    def _write_parameters(self, body: Body, surroundings: Surroundings) -> None:
+        corners = _corners(body.prepared) @ body.world[:3, :3].T + body.world[:3, 3]
         low, high = corners.min(axis=0), corners.max(axis=0)
-        meets = any((lo <= high).all() and (hi >= low).all() for lo, hi in surroundings.mesh_bounds_ws)
-        resident.meets_meshes = meets
-        for channel, uniform in enumerate(resident.uniforms):
-            record = parameters(resident.prepared, resident.textures, channel, item.quality, world, meets_meshes=meets)
+        body.meets_meshes = any((lo <= high).all() and (hi >= low).all() for lo, hi in surroundings.mesh_bounds_ws)
+        for channel, uniform in enumerate(body.uniforms):
+            record = parameters(
+                body.prepared, body.textures, channel, body.quality, body.world, meets_meshes=body.meets_meshes
+            )
             self.device.write(uniform, record.reshape(1))
 
     def draw(
@@ -122,17 +121,17 @@ class EikonalTechnique:
         timer: Any = None,
     ) -> None:
         """Encode the draws of one volume over what is in the targets."""
-        resident = self._drawn[id(item)]
-        covered = _screen_rectangle(resident.prepared, item, camera, targets.size)
+        body = self._drawn[id(item)]
+        covered = _screen_rectangle(body, camera, targets.size)
         if covered is None:
             return
         bands = _bands(covered)
         self._reserve(max(width * height for _, _, width, height in bands))
-        while len(resident.draws) < len(bands):
-            each = resident.uniforms
-            resident.draws.append([self.device.buffer(DrawParams.itemsize, "uniform", "draw") for _ in each])
-        for band, draws in zip(bands, resident.draws, strict=False):
-            self._draw_band(encoder, item, resident, draws, band, targets, surroundings, timer)
+        while len(body.draws) < len(bands):
+            each = body.uniforms
+            body.draws.append([self.device.buffer(DrawParams.itemsize, "uniform", "draw") for _ in each])
+        for band, draws in zip(bands, body.draws, strict=False):
+            self._draw_band(encoder, body, draws, band, targets, surroundings, timer)
 
     def _reserve(self, pixels: int) -> None:
         """Room for `pixels` pixels and the rays that wait for them; it only grows."""
@@ -151,8 +150,7 @@ class EikonalTechnique:
     def _draw_band(
         self,
         encoder: Any,
-        item: RefractiveVolume,
-        resident: _Resident,
+        body: Body,
         draws: list[Any],
         band: Rectangle,
         targets: Targets,
@@ -161,7 +159,7 @@ class EikonalTechnique:
     ) -> None:
         """March, look, sum, for each wavelength; then put the band into the picture."""
         width, height = band[2:]
-        for number, (channel, weights) in enumerate(draws_of(resident.prepared)):
+        for number, (channel, weights) in enumerate(draws_of(body.prepared)):
             _write_draw(self.device, draws[number], band, weights, first=number == 0)
             shared = {
                 **surroundings.bindings,
@@ -171,12 +169,12 @@ class EikonalTechnique:
                 "draw": draws[number],
             }
             encoder.copy_buffer_to_buffer(self._no_looks, 0, self._lists["look_queue"], 0, LookCount.itemsize)
-            volume = {**resident.textures.channels[channel], "volume": resident.uniforms[channel]}
+            volume = {**body.textures.channels[channel], "volume": body.uniforms[channel]}
             blocks = (-(-width // 8), -(-height // 8), 1)
-            march = self._march_kernel(item, resident)
+            march = self._march_kernel(body)
             march.run(blocks, {**shared, **volume}, encoder, timer, "eikonal march")
             waiting = (self._lists["look_queue"], 0)
-            self._look_kernel(item, surroundings.triangle_count > 0).run(
+            self._look_kernel(body, surroundings.triangle_count > 0).run(
                 (0, 0, 0), shared, encoder, timer, "eikonal look", indirect=waiting
             )
             self._sum.run((-(-width * height // 64), 1, 1), shared, encoder, timer, "eikonal sum")
@@ -190,16 +188,16 @@ class EikonalTechnique:
             label="eikonal composite",
         )
 
-    def _march_kernel(self, item: RefractiveVolume, resident: _Resident) -> ComputeKernel:
-        prepared = resident.prepared
-        constants = {**constants_of(prepared, item.quality), "MEETS_MESHES": float(resident.meets_meshes)}
+    def _march_kernel(self, body: Body) -> ComputeKernel:
+        prepared = body.prepared
+        constants = {**constants_of(prepared, body.quality), "MEETS_MESHES": float(body.meets_meshes)}
         if prepared.sharp:
             constants["GRADED"] = float(prepared.graded)
         name = "view_sharp" if prepared.sharp else "view_smooth"
         return self._kernel(name, constants)
 
-    def _look_kernel(self, item: RefractiveVolume, has_meshes: bool) -> ComputeKernel:
-        by_screen = item.surroundings == "screen"
+    def _look_kernel(self, body: Body, has_meshes: bool) -> ComputeKernel:
+        by_screen = body.objects[0].surroundings == "screen"
         return self._kernel("look", {"SCREEN_SPACE": float(by_screen), "HAS_MESHES": float(has_meshes)})
 
     def _kernel(self, name: str, constants: dict[str, float]) -> ComputeKernel:
@@ -234,12 +232,10 @@ def _corners(prepared: Prepared) -> np.ndarray:
     return signs * (0.5 * np.array(prepared.extent_m) + 2.0 * prepared.voxel)
 
 
-def _screen_rectangle(
-    prepared: Prepared, item: RefractiveVolume, camera: Camera, size: tuple[int, int]
-) -> Rectangle | None:
+def _screen_rectangle(body: Body, camera: Camera, size: tuple[int, int]) -> Rectangle | None:
     """The pixels that a volume's box can cover: (x, y, width, height), or None when it is out of the picture."""
-    clip = camera.projection_matrix(size) @ camera.view_matrix() @ item.object_to_world()
-    corners = np.concatenate([_corners(prepared), np.ones((8, 1))], axis=1) @ clip.T
+    clip = camera.projection_matrix(size) @ camera.view_matrix() @ body.world
+    corners = np.concatenate([_corners(body.prepared), np.ones((8, 1))], axis=1) @ clip.T
     width, height = size
     if (corners[:, 3] <= 1e-6).any():
         return (0, 0, width, height) if (corners[:, 3] > 1e-6).any() else None

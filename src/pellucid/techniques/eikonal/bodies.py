@@ -1,0 +1,38 @@
+"""Bodies: what the passes of this technique work on. A placed volume is a body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from pellucid.scene import Quality, RefractiveVolume
+    from pellucid.techniques.eikonal.prepare import Prepared
+    from pellucid.techniques.eikonal.resources import VolumeTextures
+
+
+@dataclass
+class Body:
+    """One box of matter on the device.
+
+    Attributes
+    ----------
+    objects : the objects of the scene that it stands for.
+    prepared, textures : its volume, shared with other bodies of the same volume.
+    uniforms : one VolumeParams buffer for each channel of `prepared`.
+    world : (4, 4) float64, object to world.
+    quality : how carefully rays are bent.
+    meets_meshes : opaque meshes reach into its box.
+    draws : for each band of the picture one DrawParams buffer for each wavelength.
+    """
+
+    objects: tuple[RefractiveVolume, ...]
+    prepared: Prepared
+    textures: VolumeTextures
+    uniforms: list[Any]
+    world: np.ndarray
+    quality: Quality
+    meets_meshes: bool = False
+    draws: list[list[Any]] = field(default_factory=list)
