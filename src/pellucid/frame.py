@@ -15,7 +15,8 @@ from pellucid.errors import AssetError
 class Frame:
     """One rendered picture.
 
-    radiance : (H, W, 3) float32, linear Rec.709, scene-referred, never clamped. Row 0 is the top.
+    radiance : (H, W, 3) float32, linear Rec.709, scene-referred, never clamped; colours purer than Rec.709, which
+        matter with many wavelengths makes, have negative components. Row 0 is the top.
     depth : (H, W) float32, metres along the view axis to the first surface, inf where nothing is.
     display : (H, W, 3) uint8, after exposure, tone mapping and sRGB encoding.
     timings : {pass: milliseconds}; the device's own clock for passes, the wall clock for "prepare" and "total".
@@ -43,13 +44,15 @@ class Frame:
         AssetError : for another suffix, or when the file cannot be written; nothing half-written is left.
         """
         from pellucid.io.images import write_image
+        from pellucid.optics import into_gamut
 
         target = Path(path)
         suffix = target.suffix.lower()
         if suffix == ".png":
             write_image(target, self.display)
         elif suffix in (".exr", ".hdr"):
-            write_image(target, self.radiance)
+            # That format has no negative numbers, as colours beyond Rec.709 have them.
+            write_image(target, self.radiance if suffix == ".exr" else into_gamut(self.radiance).astype(np.float32))
         else:
             raise AssetError(target, f"pictures are not saved as '{suffix}'", "use .png, .exr or .hdr")
         return target

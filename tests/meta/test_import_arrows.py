@@ -16,12 +16,13 @@ ARROWS: dict[str, set[str]] = {
     "errors": set(),
     "optics": set(),
     "media": set(),
+    "spectra": set(),
     "fields": {"optics", "media"},
     "io": set(),
     "scene": {"media", "fields", "io"},
     "gpu": set(),
     "surroundings": {"optics", "fields", "scene", "gpu"},
-    "techniques": {"optics", "fields", "scene", "gpu", "surroundings"},
+    "techniques": {"optics", "spectra", "fields", "scene", "gpu", "surroundings"},
     "frame": {"techniques", "surroundings", "scene", "gpu", "optics", "io"},  # it encodes and saves pictures
     "renderer": {"techniques", "surroundings", "scene", "gpu", "frame"},
 }

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from pellucid.optics import (
+    into_gamut,
     luminance,
     srgb_decode,
     srgb_encode,
@@ -35,6 +36,20 @@ def test_srgb_middle_grey() -> None:
 
 def test_luminance_of_white_and_of_the_primaries() -> None:
     np.testing.assert_allclose(luminance(np.vstack([np.ones(3), np.eye(3)])), [1.0, 0.2126, 0.7152, 0.0722], atol=1e-15)
+
+
+def test_colours_of_no_screen_keep_their_luminance_and_the_line_to_white() -> None:
+    rgb = np.random.default_rng(2).normal(size=(300, 3)) + 0.3
+    rgb = rgb[luminance(rgb) > 0.0]
+    out = into_gamut(rgb)
+    assert out.min() >= 0.0
+    np.testing.assert_allclose(luminance(out), luminance(rgb), atol=1e-14)
+    within = rgb.min(axis=1) >= 0.0
+    np.testing.assert_array_equal(out[within], rgb[within])
+    np.testing.assert_allclose(out[~within].min(axis=1), 0.0, atol=1e-14)
+    away, kept = rgb - luminance(rgb)[:, None], out - luminance(out)[:, None]
+    np.testing.assert_allclose(np.cross(away, kept), 0.0, atol=1e-13)
+    np.testing.assert_array_equal(into_gamut([-1.0, 0.0, 0.0]), 0.0)
 
 
 @pytest.mark.parametrize("curve", CURVES)

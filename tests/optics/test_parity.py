@@ -125,6 +125,7 @@ VECTORS = single(RNG.normal(size=(4, 64, 3)))
 SCALARS = single(RNG.uniform(0.1, 2.0, (4, 64)))
 LAMBDAS = single(np.linspace(400.0, 700.0, 64))
 LIGHT = single(np.abs(RNG.normal(size=(400, 3))) * 10.0 ** np.linspace(-4, 3, 400)[:, None])
+BEYOND = single(RNG.normal(size=(400, 3)))
 ENCODED = single(np.repeat(np.linspace(-0.1, 1.2, 300)[:, None], 3, axis=1))
 SELLMEIER = single([1.03961212, 0.231792344, 1.01046945]), single([0.00600069867, 0.0200179144, 103.560653])
 
@@ -150,6 +151,8 @@ CASES: list[tuple[str, str, tuple[Any, ...], float, float]] = [
     ("colour", "srgb_encode", (ENCODED,), 1e-5, 1e-6),
     ("colour", "srgb_decode", (ENCODED,), 1e-5, 1e-6),
     ("colour", "luminance", (LIGHT,), 1e-6, 0.0),
+    ("colour", "into_gamut", (LIGHT,), 1e-6, 0.0),
+    ("colour", "into_gamut", (BEYOND,), 1e-5, 1e-6),
     ("colour", "tone_reinhard", (LIGHT,), 1e-6, 1e-7),
     ("colour", "tone_aces", (LIGHT,), 2e-5, 2e-6),
     # the curve's alternating coefficients sum to 40 times its value

@@ -3,6 +3,7 @@
 from pellucid.optics import attenuation, colour, dispersion, eikonal, fresnel, phase, snell
 from pellucid.optics.attenuation import extinction_from_half_distance, transmittance, water_colour
 from pellucid.optics.colour import (
+    into_gamut,
     luminance,
     srgb_decode,
     srgb_encode,
@@ -56,6 +57,7 @@ __all__ = [
     "fresnel_polarised",
     "fresnel_schlick",
     "henyey_greenstein",
+    "into_gamut",
     "kick",
     "leapfrog_step",
     "luminance",

@@ -84,6 +84,26 @@ def luminance(rgb: ArrayLike) -> Colour:
     return np.asarray(rgb, float) @ _LUMINANCE
 
 
+def into_gamut(rgb: ArrayLike) -> Colour:
+    """Colours that a screen can show in place of those it cannot: mixed with grey as bright, until nothing is negative.
+
+    Luminance is kept, and so is the hue, as far as straight lines to white in a chromaticity diagram keep it.
+
+    Parameters
+    ----------
+    rgb : (..., 3), linear; what has no luminance becomes black.
+
+    Returns
+    -------
+    (..., 3), >= 0; colours within the gamut unchanged.
+    """
+    rgb = np.asarray(rgb, float)
+    grey = np.maximum(luminance(rgb), 0.0)[..., None]
+    low = rgb.min(axis=-1, keepdims=True)
+    share = np.where(low < 0.0, grey / np.where(low < 0.0, grey - low, 1.0), 1.0)
+    return np.where(low < 0.0, np.maximum(grey + share * (rgb - grey), 0.0), rgb)
+
+
 def tone_reinhard(rgb: ArrayLike) -> Colour:
     """L/(1 + L) [reinhard2002, eq. 3], on each channel, so that saturated light stays in the gamut.
 

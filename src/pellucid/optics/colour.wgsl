@@ -18,6 +18,14 @@ fn luminance(rgb: vec3f) -> f32 {
     return dot(rgb, vec3f(0.2126, 0.7152, 0.0722));
 }
 
+// Mixed with grey as bright, until no component is negative
+fn into_gamut(rgb: vec3f) -> vec3f {
+    let grey = vec3f(max(luminance(rgb), 0.0));
+    let low = min(rgb.x, min(rgb.y, rgb.z));
+    let share = grey.x / max(grey.x - low, 1e-30);
+    return select(rgb, max(grey + share * (rgb - grey), vec3f(0.0)), low < 0.0);
+}
+
 // L/(1 + L) [reinhard2002, eq. 3], on each channel
 fn tone_reinhard(rgb: vec3f) -> vec3f {
     let light = max(rgb, vec3f(0.0));

@@ -36,6 +36,8 @@ class RefractiveVolume(SceneObject):
         ``"auto"`` becomes sharp for a volume with regions and smooth for one of arrays.
     position, rotation, scale : metres, degrees about x, y, z in this order, one factor > 0.
     dispersion : trace red, green and blue apart where the medium asks for it.
+    spectral : how many wavelengths from 400 to 700 nm are traced apart instead of these three, 4 to 64, with the
+        colours of the CIE 1931 observer; 0 for the three.
     smoothing_voxels : width of the Gaussian that smooths a field before its gradient, 0 to 8.
     gradient : ``"central"`` differences or ``"sobel"``.
     surroundings : ``"rays"`` trace what a ray sees once it has left; ``"screen"`` looks it up in the
@@ -57,6 +59,7 @@ class RefractiveVolume(SceneObject):
     rotation: checks.Vector = (0.0, 0.0, 0.0)
     scale: float = 1.0
     dispersion: bool = True
+    spectral: int = 0
     smoothing_voxels: float = 0.75
     gradient: str = "central"
     surroundings: str = "rays"
@@ -235,6 +238,7 @@ def _checked(given: Mapping[str, Any]) -> dict[str, Any]:
     tests: dict[str, Callable[[str, Any], Any]] = {
         "boundary": lambda f, v: checks.choice(f, v, ("auto", "sharp", "smooth")),
         "dispersion": checks.flag,
+        "spectral": _wavelengths,
         "smoothing_voxels": lambda f, v: checks.number(f, v, low=0.0, high=8.0, unit="voxels"),
         "gradient": lambda f, v: checks.choice(f, v, ("central", "sobel")),
         "surroundings": lambda f, v: checks.choice(f, v, ("rays", "screen")),
@@ -246,6 +250,13 @@ def _checked(given: Mapping[str, Any]) -> dict[str, Any]:
     neutral = {"position": (0.0, 0.0, 0.0), "rotation": (0.0, 0.0, 0.0), "scale": 1.0}
     placed = check_placement(prefix, **{name: given.get(name, value) for name, value in neutral.items()})
     return result | {name: value for name, value in placed.items() if name in given}
+
+
+def _wavelengths(name: str, value: Any) -> int:
+    count = checks.integer(name, value, low=0, high=64)
+    if 0 < count < 4:
+        raise SceneError(name, f"is {count}", "use 4 to 64 wavelengths, or 0 for red, green and blue")
+    return count
 
 
 def _quality(name: str, value: Any) -> Quality:

@@ -27,8 +27,8 @@ LOOKS: dict[type, tuple[str, ...]] = {
         *("double_sided", "shading"),
     ),
     RefractiveVolume: (
-        *("position", "rotation", "scale", "boundary", "dispersion", "smoothing_voxels", "gradient"),
-        *("surroundings", "quality"),
+        *("position", "rotation", "scale", "boundary", "dispersion", "spectral", "smoothing_voxels"),
+        *("gradient", "surroundings", "quality"),
     ),
 }
 

@@ -158,6 +158,7 @@ class VolumeBase(Placed):
     type: Literal["refractive_volume"]
     boundary: StrictStr = UNSET
     dispersion: StrictBool = UNSET
+    spectral: StrictInt = UNSET
     smoothing_voxels: Number = UNSET
     gradient: StrictStr = UNSET
     surroundings: StrictStr = UNSET

@@ -87,7 +87,13 @@ class EikonalTechnique:
 
     def _load(self, item: RefractiveVolume) -> _Loaded:
         prepared = prepare(
-            item.volume, item.boundary, item.smoothing_voxels, item.gradient, item.quality.method, item.dispersion
+            item.volume,
+            item.boundary,
+            item.smoothing_voxels,
+            item.gradient,
+            item.quality.method,
+            item.dispersion,
+            item.spectral,
         )
         return _Loaded(item.volume, prepared, upload(self.device, prepared))
 
@@ -224,7 +230,8 @@ def _bands(rectangle: Rectangle) -> list[Rectangle]:
 
 def _key(item: RefractiveVolume) -> Any:
     """What decides how a volume is prepared; two objects that agree in it share their textures."""
-    return (id(item.volume), item.boundary, item.smoothing_voxels, item.gradient, item.quality.method, item.dispersion)
+    how = (item.boundary, item.smoothing_voxels, item.gradient, item.quality.method, item.dispersion, item.spectral)
+    return (id(item.volume), *how)
 
 
 def _corners(prepared: Prepared) -> np.ndarray:

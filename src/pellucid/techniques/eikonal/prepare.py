@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -12,8 +12,9 @@ from pellucid.errors import SceneError
 from pellucid.fields.distance import homogeneous_distance
 from pellucid.fields.gradient import central, sobel
 from pellucid.fields.smoothing import gaussian
-from pellucid.fields.volume import Volume
-from pellucid.optics.dispersion import LAMBDA_D_NM
+from pellucid.fields.volume import Region, Volume
+from pellucid.optics.dispersion import LAMBDA_D_NM, RGB_LAMBDA_NM
+from pellucid.spectra import stratified
 
 # Smallest jump of the index between neighbours that is taken for a surface: what a smaller one would reflect at normal
 # incidence is below 3e-4, and graded lenses stay under it from 40 voxels of diameter on.
@@ -24,6 +25,10 @@ EVENT_ON, EVENT_OFF = 0.25, 0.02
 CONSTANT_WITHIN = 1e-5
 # Voxels that are added around a body which its box cuts off, so that its distance is known on both sides of the cut.
 BOX_PAD = 3
+# Most memory for the fields of a volume whose index field differs from wavelength to wavelength, bytes.
+MOST_FIELD_BYTES = 1 << 30
+# Of a voxel: force and radius, and the index.
+FIELD_BYTES = 20
 
 
 @dataclass(frozen=True)
@@ -33,11 +38,13 @@ class Channel:
     force : (Z, Y, X, 4); grad(n^2)/2 in 1/m for leapfrog, grad n for Euler; then the homogeneous radius, voxels.
     index : (Z, Y, X) float32, n - ambient_n; or None when nothing needs it.
     region_n : index of each region at this wavelength.
+    lambda_nm : the wavelength.
     """
 
     force: np.ndarray | None
     index: np.ndarray | None
     region_n: tuple[float, ...]
+    lambda_nm: float = LAMBDA_D_NM
 
 
 @dataclass(frozen=True)
@@ -61,7 +68,7 @@ class Prepared:
 
     @property
     def dispersive(self) -> bool:
-        return len(self.channels) == 3
+        return len(self.channels) > 1
 
     @property
     def voxel(self) -> float:
@@ -75,6 +82,7 @@ def prepare(
     gradient: str = "central",
     method: str = "leapfrog",
     dispersion: bool = True,
+    spectral: int = 0,
 ) -> Prepared:
     """Derive the arrays of one volume.
 
@@ -85,32 +93,36 @@ def prepare(
     smoothing_voxels : standard deviation of the presmoothing, smooth boundary only.
     gradient : "central" or "sobel" differences.
     method : "leapfrog" or "euler", which want different forces.
-    dispersion : keep the three channels of a dispersive volume apart.
+    dispersion : keep the wavelengths of a dispersive volume apart.
+    spectral : how many wavelengths; 0 for the three of red, green and blue.
 
     Raises
     ------
-    SceneError : when the boundary or the gradient is not one of these.
+    SceneError : when the boundary or the gradient is not one of these, or fields of so many wavelengths are too big.
     """
+    lambdas_nm: tuple[float, ...] = (LAMBDA_D_NM,)
+    if dispersion and volume.is_dispersive:
+        lambdas_nm = tuple(stratified(spectral)) if spectral else RGB_LAMBDA_NM
     if boundary == "sharp":
-        return _prepare_sharp(volume, gradient, method, dispersion)
+        return _prepare_sharp(volume, gradient, method, lambdas_nm)
     if boundary == "smooth":
-        return _prepare_smooth(volume, smoothing_voxels, gradient, method, dispersion)
+        return _prepare_smooth(volume, smoothing_voxels, gradient, method, lambdas_nm)
     raise SceneError("volume.boundary", f"is '{boundary}'", "use 'sharp' or 'smooth'")
 
 
-def _prepare_sharp(volume: Volume, gradient: str, method: str, dispersion: bool) -> Prepared:
+def _prepare_sharp(volume: Volume, gradient: str, method: str, lambdas_nm: Sequence[float]) -> Prepared:
     volume = _closed_at_box(volume)
     regions = volume.regions
     graded = volume.delta_n is not None
-    spread = dispersion and volume.is_dispersive
     fields = [f for f in (volume.absorption, volume.emission, volume.opaque) if f is not None] if graded else []
-    deltas: Sequence[np.ndarray | None] = _channels(volume.delta_n, spread) if graded else [None] * (3 if spread else 1)
     straight = None if graded else _distance_to_opaque(volume)
-    channels = []
-    for i, delta in enumerate(deltas):
-        indices = tuple(float(r.medium.n_rgb[i] if spread else r.medium.n(LAMBDA_D_NM)) for r in regions)
-        force = straight if delta is None else _force(delta, fields, volume, gradient, method)
-        channels.append(Channel(force, delta, indices))
+    # Wavelengths that share a field share what is made of it.
+    deltas = _fields_at(volume.delta_n, lambdas_nm) if volume.delta_n is not None else [None] * len(lambdas_nm)
+    forces = {id(d): straight if d is None else _force(d, fields, volume, gradient, method) for d in _unlike(deltas)}
+    channels = [
+        Channel(forces[id(delta)], delta, indices_at(regions, lambda_nm), lambda_nm)
+        for delta, lambda_nm in zip(deltas, lambdas_nm, strict=True)
+    ]
     voxel = min(volume.voxel_m)
     distance = np.stack([r.sdf / voxel for r in regions], axis=-1) if regions else None
     return Prepared(
@@ -131,10 +143,12 @@ def _prepare_sharp(volume: Volume, gradient: str, method: str, dispersion: bool)
     )
 
 
-def _prepare_smooth(volume: Volume, smoothing: float, gradient: str, method: str, dispersion: bool) -> Prepared:
-    raw = volume.rasterised(by_channel=dispersion)
+def _prepare_smooth(
+    volume: Volume, smoothing: float, gradient: str, method: str, lambdas_nm: Sequence[float]
+) -> Prepared:
+    raw = volume.rasterised(by_channel=len(lambdas_nm) > 1)
     assert raw.delta_n is not None
-    deltas = _channels(raw.delta_n, dispersion and raw.is_dispersive)
+    deltas = _fields_at(raw.delta_n, lambdas_nm)
     pad = _padding(deltas, smoothing)
     absorption, emission, opaque = (_padded(f, pad) for f in (raw.absorption, raw.emission, raw.opaque))
     shape = np.array(raw.shape[::-1])
@@ -142,12 +156,13 @@ def _prepare_smooth(volume: Volume, smoothing: float, gradient: str, method: str
     jump = _surface_jump(deltas[len(deltas) // 2])
     others = [f for f in (absorption, emission, opaque) if f is not None]
     grid = _Grid(raw.voxel_m, raw.ambient_n)
-    channels = []
-    for delta in deltas:
+    made: dict[int, tuple[np.ndarray, np.ndarray]] = {}
+    for delta in _unlike(deltas):
         soft = np.pad(delta, pad)
         if smoothing > 0.0:
             soft = gaussian(soft, smoothing)
-        channels.append(Channel(_force(soft, others, grid, gradient, method), soft, ()))
+        made[id(delta)] = _force(soft, others, grid, gradient, method), soft
+    channels = [Channel(*made[id(d)], (), lambda_nm) for d, lambda_nm in zip(deltas, lambdas_nm, strict=True)]
     steepest = jump / (min(raw.voxel_m) * np.sqrt(2 * np.pi * (smoothing**2 + 0.5))) if jump else np.inf
     return Prepared(
         sharp=False,
@@ -206,13 +221,43 @@ def _rgb(values: Sequence[float] | np.ndarray) -> tuple[float, float, float]:
     return r, g, b
 
 
-def _channels(delta: np.ndarray | None, spread: bool) -> list[np.ndarray]:
-    assert delta is not None
+def indices_at(regions: Sequence[Region], lambda_nm: float) -> tuple[float, ...]:
+    """Index of each region; beyond the wavelengths that the source of a medium covers, the one where they end."""
+    return tuple(float(r.medium.n(np.clip(lambda_nm, *r.medium.valid_nm))) for r in regions)
+
+
+def _fields_at(delta: np.ndarray, lambdas_nm: Sequence[float]) -> list[np.ndarray]:
+    """The index field (Z, Y, X) at each wavelength; the same array where it does not depend on it.
+
+    Of three channels the one of green serves for all colours at once. Between and beyond them the index follows
+    n = a + b/lambda^2 + c/lambda^4 through the three [born1999, 2.3.4].
+    """
     if delta.ndim == 3:
-        return [delta] * (3 if spread else 1)
-    if spread:
-        return [np.ascontiguousarray(delta[..., c]) for c in range(3)]
-    return [np.ascontiguousarray(delta[..., 1])]
+        return [delta] * len(lambdas_nm)
+    if len(lambdas_nm) == 1:
+        return [np.ascontiguousarray(delta[..., 1])]
+    bytes_each = delta[..., 0].size * FIELD_BYTES
+    if len(lambdas_nm) * bytes_each > max(MOST_FIELD_BYTES, len(RGB_LAMBDA_NM) * bytes_each):
+        size = len(lambdas_nm) * bytes_each / 2**30
+        reason = f"is {len(lambdas_nm)}, and fields of that many wavelengths take {size:.1f} GiB"
+        most = max(0, MOST_FIELD_BYTES // bytes_each)
+        fewer = f"use up to {most}, or " if most >= 4 else "use 0, or "
+        raise SceneError(
+            "refractive_volume.spectral", reason, f"{fewer}fewer voxels, or sharp regions, which share theirs"
+        )
+    return [(delta @ _between_channels(lambda_nm)).astype(np.float32) for lambda_nm in lambdas_nm]
+
+
+def _between_channels(lambda_nm: float) -> np.ndarray:
+    """(3,) shares of the red, green and blue index in that at another wavelength: Lagrange in 1/lambda^2."""
+    at, u = np.asarray(RGB_LAMBDA_NM) ** -2.0, lambda_nm**-2.0
+    others = [np.delete(at, c) for c in range(3)]
+    return np.array([np.prod((u - o) / (at[c] - o)) for c, o in enumerate(others)])
+
+
+def _unlike(fields: Sequence[np.ndarray | None]) -> list[Any]:
+    """Each array of a list once."""
+    return list({id(field): field for field in fields}.values())
 
 
 def _padding(deltas: Sequence[np.ndarray], smoothing: float) -> int:

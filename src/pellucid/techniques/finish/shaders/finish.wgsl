@@ -1,4 +1,4 @@
-// Radiance to a picture for a screen: glow, exposure, tone mapping, sRGB.
+// Radiance to a picture for a screen: glow, exposure, colours of the screen, tone mapping, sRGB.
 //!import optics/colour
 //!import surroundings/shaders/full_picture
 //!struct FinishParams from techniques.finish.passes
@@ -15,7 +15,7 @@ fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
         let uv = 0.5 * position.xy / vec2f(textureDimensions(blurred));
         light = mix(light, textureSampleLevel(blurred, blurred_sampler, uv, 0.0).rgb, finish_params.glow);
     }
-    let exposed = max(finish_params.exposure * light, vec3f(0.0));
+    let exposed = into_gamut(finish_params.exposure * light);
     return vec4f(srgb_encode(saturate(tone_mapped(exposed))), 1.0);
 }
 
