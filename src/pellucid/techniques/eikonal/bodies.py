@@ -10,6 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from pellucid.scene import Quality, RefractiveVolume
     from pellucid.techniques.eikonal.prepare import Prepared
+    from pellucid.techniques.eikonal.proxies import Box
     from pellucid.techniques.eikonal.resources import VolumeTextures
 
 
@@ -23,6 +24,7 @@ class Body:
     prepared, textures : its volume, shared with other bodies of the same volume.
     uniforms : one VolumeParams buffer for each channel of `prepared`.
     world : (4, 4) float64, object to world.
+    box : its proxy, object metres.
     quality : how carefully rays are bent.
     meets_meshes : opaque meshes reach into its box.
     draws : for each band of the picture one DrawParams buffer for each wavelength.
@@ -33,6 +35,7 @@ class Body:
     textures: VolumeTextures
     uniforms: list[Any]
     world: np.ndarray
+    box: Box
     quality: Quality
     meets_meshes: bool = False
     draws: list[list[Any]] = field(default_factory=list)

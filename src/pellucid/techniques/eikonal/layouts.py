@@ -16,6 +16,7 @@ VolumeParams = struct(
         ("ambient_n", "f32"),
         ("proxy_half", "vec3f"),  # of the box where rays begin, object metres
         ("scale", "f32"),  # world metres per object metre
+        ("proxy_center", "vec3f"),
         ("voxel", "f32"),  # shortest voxel edge, object metres
         ("step", "f32"),  # longest step in inhomogeneous matter, object metres
         ("force_scale", "f32"),  # stored force times this is grad(n^2)/2 per object metre

@@ -16,6 +16,7 @@ from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT, Targets
 from pellucid.techniques.eikonal.bodies import Body
 from pellucid.techniques.eikonal.layouts import DrawParams, LookCount, LookRay, VolumeParams
 from pellucid.techniques.eikonal.prepare import Prepared, prepare
+from pellucid.techniques.eikonal.proxies import Box, corners, tight_box, whole_box
 from pellucid.techniques.eikonal.resources import LOOKS_PER_PIXEL, VolumeTextures, constants_of, parameters, upload
 from pellucid.techniques.eikonal.wavelengths import draws_of
 
@@ -36,6 +37,7 @@ class _Loaded:
     source: Any
     prepared: Prepared
     textures: VolumeTextures
+    tight: Box
 
 
 class EikonalTechnique:
@@ -79,7 +81,10 @@ class EikonalTechnique:
             if key not in self._loaded:
                 self._loaded[key] = self._load(item)
             before = self.bodies[number] if number < len(self.bodies) else None
-            body = self._place(item, self._loaded[key], before)
+            volume = self._loaded[key]
+            # Alone in the scene it may have all of its box: rays are not sent from body to body.
+            box = volume.tight if len(objects) > 1 else whole_box(volume.prepared)
+            body = self._place(item, volume, box, before)
             self._write_parameters(body, surroundings)
             bodies.append(body)
         self.bodies = bodies
@@ -95,11 +100,11 @@ class EikonalTechnique:
             item.dispersion,
             item.spectral,
         )
-        return _Loaded(item.volume, prepared, upload(self.device, prepared))
+        return _Loaded(item.volume, prepared, upload(self.device, prepared), tight_box(prepared))
 
-    def _place(self, item: RefractiveVolume, volume: _Loaded, before: Body | None) -> Body:
+    def _place(self, item: RefractiveVolume, volume: _Loaded, box: Box, before: Body | None) -> Body:
         """The body of an object; buffers of the one before are used again if it has the same volume."""
-        placed = Body((item,), volume.prepared, volume.textures, [], item.object_to_world(), item.quality)
+        placed = Body((item,), volume.prepared, volume.textures, [], item.object_to_world(), box, item.quality)
         if before is not None and before.textures is volume.textures:
             placed.uniforms, placed.draws = before.uniforms, before.draws
         else:
@@ -108,12 +113,12 @@ class EikonalTechnique:
         return placed
 
     def _write_parameters(self, body: Body, surroundings: Surroundings) -> None:
-        corners = _corners(body.prepared) @ body.world[:3, :3].T + body.world[:3, 3]
-        low, high = corners.min(axis=0), corners.max(axis=0)
+        around = corners(body.box, 2.0 * body.prepared.voxel) @ body.world[:3, :3].T + body.world[:3, 3]
+        low, high = around.min(axis=0), around.max(axis=0)
         body.meets_meshes = any((lo <= high).all() and (hi >= low).all() for lo, hi in surroundings.mesh_bounds_ws)
         for channel, uniform in enumerate(body.uniforms):
             record = parameters(
-                body.prepared, body.textures, channel, body.quality, body.world, meets_meshes=body.meets_meshes
+                body.prepared, body.textures, channel, body.quality, body.world, body.box, body.meets_meshes
             )
             self.device.write(uniform, record.reshape(1))
 
@@ -234,19 +239,14 @@ def _key(item: RefractiveVolume) -> Any:
     return (id(item.volume), *how)
 
 
-def _corners(prepared: Prepared) -> np.ndarray:
-    signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
-    return signs * (0.5 * np.array(prepared.extent_m) + 2.0 * prepared.voxel)
-
-
 def _screen_rectangle(body: Body, camera: Camera, size: tuple[int, int]) -> Rectangle | None:
     """The pixels that a volume's box can cover: (x, y, width, height), or None when it is out of the picture."""
     clip = camera.projection_matrix(size) @ camera.view_matrix() @ body.world
-    corners = np.concatenate([_corners(body.prepared), np.ones((8, 1))], axis=1) @ clip.T
+    around = np.pad(corners(body.box, 2.0 * body.prepared.voxel), ((0, 0), (0, 1)), constant_values=1.0) @ clip.T
     width, height = size
-    if (corners[:, 3] <= 1e-6).any():
-        return (0, 0, width, height) if (corners[:, 3] > 1e-6).any() else None
-    ndc = corners[:, :2] / corners[:, 3:]
+    if (around[:, 3] <= 1e-6).any():
+        return (0, 0, width, height) if (around[:, 3] > 1e-6).any() else None
+    ndc = around[:, :2] / around[:, 3:]
     pixels = (ndc * (0.5, -0.5) + 0.5) * (width, height)
     low = np.clip(np.floor(pixels.min(axis=0)) - 1, 0, (width, height)).astype(int)
     high = np.clip(np.ceil(pixels.max(axis=0)) + 1, 0, (width, height)).astype(int)

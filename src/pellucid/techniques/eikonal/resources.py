@@ -11,9 +11,8 @@ from pellucid.gpu import Device
 from pellucid.scene.quality import Quality
 from pellucid.techniques.eikonal.layouts import VolumeParams, blank_params
 from pellucid.techniques.eikonal.prepare import Prepared
+from pellucid.techniques.eikonal.proxies import Box, whole_box
 
-# The box of a volume whose box is its surface is entered from this far outside, voxels.
-BOX_MARGIN_VOXELS = 1.5
 # Between two looks at the opaque meshes that reach into a volume a curved ray turns by this much, as a change of its
 # optical momentum; the chord then departs from the arc by about 1 % of its length.
 PAUSE_TURN = 0.1
@@ -114,19 +113,21 @@ def parameters(
     channel: int,
     quality: Quality,
     world_from_object: np.ndarray,
+    box: Box | None = None,
     meets_meshes: bool = False,
 ) -> np.ndarray:
-    """The VolumeParams record of one channel. world_from_object : (4, 4) float64, metres."""
+    """The VolumeParams record of one channel.
+
+    world_from_object : (4, 4) float64, metres. box : the proxy; all of the volume when omitted.
+    """
     out = blank_params()
-    half = 0.5 * np.array(prepared.extent_m)
-    by_box = prepared.sharp and prepared.distance is None
     curved = not prepared.sharp or prepared.graded
     row = prepared.channels[channel]
     out["world_from_object"] = np.asarray(world_from_object, np.float64).T
     out["object_from_world"] = np.linalg.inv(np.asarray(world_from_object, np.float64)).T
-    out["half_extent"] = half
+    out["half_extent"] = 0.5 * np.array(prepared.extent_m)
     out["ambient_n"] = prepared.ambient_n
-    out["proxy_half"] = half + (BOX_MARGIN_VOXELS * prepared.voxel if by_box else 0.0)
+    out["proxy_center"], out["proxy_half"] = box or whole_box(prepared)
     out["scale"] = scale_of(world_from_object)
     out["voxel"] = prepared.voxel
     out["step"] = quality.step_voxels * prepared.voxel

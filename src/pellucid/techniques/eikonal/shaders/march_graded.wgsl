@@ -1,6 +1,6 @@
 // Curved pieces between sharp surfaces, inside a region whose index varies.
 
-//!import techniques/eikonal/shaders/box
+//!import techniques/eikonal/shaders/proxy
 //!import techniques/eikonal/shaders/interfaces
 //!import techniques/eikonal/shaders/step
 
@@ -9,7 +9,7 @@ fn march_graded(walk: ptr<function, Walk>, crossing: ptr<function, Crossing>) ->
     let p_begin = (*walk).p0 + (*walk).q;
     var stride = FIRST_STRIDE * volume.voxel;
     while ((*walk).steps < volume.max_steps) {
-        let room = intersect_box((*walk).x, normalize((*walk).p0 + (*walk).q), volume.proxy_half).y;
+        let room = proxy_span((*walk).x, normalize((*walk).p0 + (*walk).q)).y;
         if (room <= 1e-4 * volume.voxel) { return LEFT; }
         var before = *walk;
         let step = take_step(walk, min(stride, room));

@@ -1,6 +1,6 @@
 // The smooth boundary model [tevs2007, 3.1]: a presmoothed field in which rays bend, and boundary events for Fresnel.
 
-//!import techniques/eikonal/shaders/box
+//!import techniques/eikonal/shaders/proxy
 //!import techniques/eikonal/shaders/step
 
 // A passage through a steep part of the field, from where it begins to where it is over.
@@ -23,7 +23,7 @@ fn march_smooth(walk: ptr<function, Walk>, passage: ptr<function, Passage>, cros
     var over = false;
     while (event == EXHAUSTED && !over && (*walk).steps < volume.max_steps) {
         // Near a face of the box a step is cut to where the ray leaves it; this needs divisions that the others are spared.
-        let room = intersect_box((*walk).x, normalize((*walk).p0 + (*walk).q), volume.proxy_half).y;
+        let room = proxy_span((*walk).x, normalize((*walk).p0 + (*walk).q)).y;
         var blocked = take_step(walk, room).opaque_at_probe;
         over = note_passage(walk, passage);
         var turned = has_turned(walk, p_begin);
@@ -43,8 +43,7 @@ fn march_smooth(walk: ptr<function, Walk>, passage: ptr<function, Passage>, cros
 }
 
 fn is_clear_of_faces(walk: ptr<function, Walk>) -> bool {
-    let inside = volume.proxy_half - abs((*walk).x);
-    return min(inside.x, min(inside.y, inside.z)) > max(volume.step, (*walk).radius);
+    return proxy_clearance((*walk).x) > max(volume.step, (*walk).radius);
 }
 
 fn has_turned(walk: ptr<function, Walk>, p_begin: vec3f) -> bool {

@@ -1,6 +1,6 @@
 // Straight pieces between sharp surfaces, by sphere tracing of signed distances.
 
-//!import techniques/eikonal/shaders/box
+//!import techniques/eikonal/shaders/proxy
 //!import techniques/eikonal/shaders/interfaces
 //!import techniques/eikonal/shaders/gather
 
@@ -9,7 +9,7 @@
 fn march_straight(walk: ptr<function, Walk>, crossing: ptr<function, Crossing>) -> u32 {
     let start = (*walk).x;
     let d = normalize((*walk).p0);
-    let room = intersect_box(start, d, volume.proxy_half).y;
+    let room = proxy_span(start, d).y;
     var steps = (*walk).steps;
     var event = PAUSED;
     var t = 0.0;

@@ -16,7 +16,7 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group
     let index = id.x + id.y * groups.x * 64u;
     if (index >= trace_params.count) { return; }
     var ray = trace_rays[index];
-    let span = intersect_box(ray.position, ray.momentum, volume.proxy_half);
+    let span = proxy_span(ray.position, ray.momentum);
     ray.base = ray.momentum * volume.ambient_n;
     ray.n = volume.ambient_n;
     if (span.x > span.y || span.y < 0.0) {

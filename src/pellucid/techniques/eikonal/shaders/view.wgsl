@@ -4,7 +4,7 @@
 //!import surroundings/shaders/environment
 //!import surroundings/shaders/raycast
 //!import techniques/eikonal/shaders/looks
-//!import techniques/eikonal/shaders/box
+//!import techniques/eikonal/shaders/proxy
 //!import techniques/eikonal/shaders/splitting
 //!import techniques/eikonal/shaders/bindings
 //!import techniques/eikonal/shaders/fields
@@ -38,7 +38,7 @@ fn pixel_of(group: vec2u, lane: u32) -> vec2u {
 fn to_object(ray: CameraRay) -> ViewRay {
     let x = (volume.object_from_world * vec4f(ray.origin, 1.0)).xyz;
     let d = normalize((volume.object_from_world * vec4f(ray.direction, 0.0)).xyz);
-    let span = intersect_box(x, d, volume.proxy_half);
+    let span = proxy_span(x, d);
     let near = max(span.x, 0.0);
     return ViewRay(x + near * d, d, near * volume.scale, span.x < span.y && span.y > 0.0);
 }
