@@ -21,6 +21,12 @@ def test_one_medium_in_detail(pellucid):
         assert nm in said.out
 
 
+def test_a_crystal_shows_both_of_its_indices(pellucid):
+    said = pellucid("media", "calcite")
+    assert said.code == 0 and "uniaxial" in said.out and "n_e" in said.out
+    assert "1.658461" in said.out and "1.486185" in said.out
+
+
 def test_a_constant_index(pellucid):
     said = pellucid("media", "1.4")
     assert said.code == 0 and "1.400000" in said.out

@@ -40,14 +40,9 @@ SPOTS = [
     ("diamond", 589.3, 2.417, 1e-3),  # Peter 1923, and every handbook
     ("water", 589.3, 1.33299 * 1.000271, 5e-5),  # CRC Handbook, 20 C, against air; the source is against vacuum
     ("sea water", 589.3, 1.3394, 1e-4),  # CRC Handbook, 35 g/kg, 20 C
-    ("ice", 550.0, 1.3110, 2.5e-4),  # Warren & Brandt 2008, table; the fit is within 2.1e-4
-    ("ice", 450.0, 1.3157, 2.5e-4),
     ("calcite", 589.3, 1.6584, 1e-4),  # CRC Handbook
-    ("calcite (extraordinary)", 589.3, 1.4864, 3e-4),
     ("quartz", 589.3, 1.5442, 1e-4),  # CRC Handbook
-    ("quartz (extraordinary)", 589.3, 1.5533, 1e-4),
     ("sapphire", 589.3, 1.768, 5e-4),  # CRC Handbook
-    ("sapphire (extraordinary)", 589.3, 1.760, 5e-4),
     ("rutile", 589.3, 2.613, 5e-3),  # DeVore 1951
     ("cubic zirconia", 589.3, 2.158, 5e-4),  # Wood & Nassau 1982
     ("fluorite", 587.56, 1.43385, 5e-6),  # Malitson 1963
@@ -58,6 +53,18 @@ SPOTS = [
     ("acrylic", 587.56, 1.4915, 1.5e-3),  # PMMA, data sheets 1.490-1.492
     ("polycarbonate", 587.56, 1.585, 1e-3),
     ("polystyrene", 587.56, 1.5915, 1.5e-3),
+]
+
+# the extraordinary rays
+EXTRAORDINARY = [
+    ("calcite", 589.3, 1.4864, 3e-4),  # CRC Handbook
+    ("quartz", 589.3, 1.5533, 1e-4),  # CRC Handbook
+    ("sapphire", 589.3, 1.760, 5e-4),  # CRC Handbook
+    ("rutile", 589.3, 2.909, 5e-3),  # CRC Handbook: 2.616 and 2.903; DeVore 1951 has 2.909
+    ("magnesium fluoride", 589.3, 1.38950, 2e-4),  # Dodge 1984, as quoted by makers: 1.38950 at 0.5893 um
+    ("lithium niobate", 632.8, 2.2028, 1e-3),  # of congruent crystals, as quoted for the helium-neon laser
+    ("ice", 589.3, 1.3105, 1e-4),  # Hobbs 1974
+    ("tourmaline", 589.3, 1.624, 1e-3),
 ]
 
 ABBE = [
@@ -82,6 +89,42 @@ def test_schott_glasses_have_the_index_and_abbe_number_of_their_data_sheets(name
 @pytest.mark.parametrize(("name", "lambda_nm", "expected", "tolerance"), SPOTS)
 def test_published_indices(name: str, lambda_nm: float, expected: float, tolerance: float) -> None:
     assert media.get(name).n(lambda_nm) == pytest.approx(expected, abs=tolerance)
+
+
+@pytest.mark.parametrize(("lambda_nm", "mean"), [(550.0, 1.3110), (450.0, 1.3157)])
+def test_ice_has_the_mean_index_of_the_table(lambda_nm: float, mean: float) -> None:
+    ice = media.get("ice")  # Warren & Brandt 2008; the fit is within 2.1e-4
+    assert (2.0 * ice.n(lambda_nm) + ice.n_e(lambda_nm)) / 3.0 == pytest.approx(mean, abs=2.5e-4)
+
+
+@pytest.mark.parametrize(("name", "lambda_nm", "expected", "tolerance"), EXTRAORDINARY)
+def test_published_extraordinary_indices(name: str, lambda_nm: float, expected: float, tolerance: float) -> None:
+    crystal = media.get(name)
+    assert crystal.is_uniaxial and crystal.extraordinary is not None
+    assert crystal.n_e(lambda_nm) == pytest.approx(expected, abs=tolerance)
+    assert np.all(np.diff(crystal.n_e_rgb) > 0.0)
+
+
+def test_an_isotropic_medium_has_one_index() -> None:
+    glass = media.get("N-BK7")
+    assert not glass.is_uniaxial
+    np.testing.assert_array_equal(glass.n_e_rgb, glass.n_rgb)
+    np.testing.assert_array_equal(glass.absorption_e_rgb_per_m, glass.absorption_rgb_per_m)
+    with pytest.raises(SceneError, match="no extraordinary ray"):
+        glass.with_absorption((1.0, 1.0, 1.0), extraordinary_rgb_per_m=(1.0, 1.0, 1.0))
+
+
+def test_a_crystal_of_two_numbers_and_its_colours() -> None:
+    crystal = media.uniaxial(1.7, 1.5, (1.0, 2.0, 3.0), (4.0, 5.0, 6.0), name="two")
+    assert crystal.is_uniaxial and not crystal.is_dispersive and crystal.name == "two"
+    np.testing.assert_array_equal(crystal.n_e([500.0, 600.0]), 1.5)
+    np.testing.assert_array_equal(crystal.absorption_e_rgb_per_m, [4.0, 5.0, 6.0])
+    red = crystal.with_absorption((0.0, 9.0, 9.0))
+    np.testing.assert_array_equal(red.absorption_e_rgb_per_m, [0.0, 9.0, 9.0])
+    other = crystal.with_absorption((0.0, 9.0, 9.0), extraordinary_rgb_per_m=(7.0, 0.0, 0.0))
+    np.testing.assert_array_equal(other.absorption_e_rgb_per_m, [7.0, 0.0, 0.0])
+    with pytest.raises(SceneError, match="refractive index"):
+        media.uniaxial(1.5, 0.0)
 
 
 @pytest.mark.parametrize(("name", "expected", "tolerance"), ABBE)
@@ -117,7 +160,8 @@ def test_every_medium_is_usable_and_says_where_it_comes_from(name: str) -> None:
         assert 5.0 < medium.abbe < 110.0
     assert medium.source and medium.absorption_source
     known = set(re.findall(r"@\w+\{(\w+),", BIBLIOGRAPHY.read_text(encoding="utf-8")))
-    cited = set(re.findall(r"\[(\w+)", f"{medium.source} {medium.absorption_source}"))
+    rays = [medium] if medium.extraordinary is None else [medium, medium.extraordinary]
+    cited = set(re.findall(r"\[(\w+)", " ".join(f"{ray.source} {ray.absorption_source}" for ray in rays)))
     assert cited <= known
     assert cited or "representative" in medium.source or name == "vacuum"
     assert medium.absorption_source != "treated as clear" or not np.any(medium.absorption_rgb_per_m)

@@ -18,7 +18,7 @@ SHADERS = sorted(str(p.relative_to(PACKAGE).with_suffix("")) for p in PACKAGE.rg
 LAWS = sorted({p.stem for p in OPTICS.iterdir() if p.suffix in {".py", ".wgsl"} and p.stem != "__init__"})
 
 # They take the field as a function, and WGSL has no function values: its techniques call the parts (drift, kick).
-PYTHON_ONLY = {"leapfrog_step", "euler_step"}
+PYTHON_ONLY = {"leapfrog_step", "euler_step", "hamiltonian_step"}
 
 
 @pytest.mark.parametrize("name", SHADERS)

@@ -64,6 +64,7 @@ def _print_one(medium: Medium) -> None:
     facts = {
         "kind": medium.kind,
         "index": f"n_d = {medium.n_d:.6f}, Abbe number {_abbe(medium)}",
+        **_extraordinary(medium),
         "known": f"{_range(medium)} nm",
         "source": medium.source,
         "absorption": f"{_absorption(medium)} 1/m (red, green, blue); {medium.absorption_source}",
@@ -74,9 +75,21 @@ def _print_one(medium: Medium) -> None:
     table.add_column("line", no_wrap=True)
     table.add_column("wavelength, nm", justify="right")
     table.add_column("n", justify="right")
+    rays = [medium]
+    if medium.extraordinary is not None:
+        table.add_column("n_e", justify="right")
+        rays.append(medium.extraordinary)
     for label, wavelength in _wavelengths(medium):
-        table.add_row(label, f"{wavelength:.2f}", f"{float(medium.n(wavelength)):.6f}")
+        table.add_row(label, f"{wavelength:.2f}", *(f"{float(ray.n(wavelength)):.6f}" for ray in rays))
     console.print(table)
+
+
+def _extraordinary(medium: Medium) -> dict[str, str]:
+    """What a uniaxial crystal has besides its ordinary ray."""
+    ray = medium.extraordinary
+    if ray is None:
+        return {}
+    return {"crystal": f"uniaxial; extraordinary n_d = {ray.n_d:.6f}, absorption {_absorption(ray)} 1/m"}
 
 
 def _wavelengths(medium: Medium) -> list[tuple[str, float]]:

@@ -1,15 +1,16 @@
 """Gemstones: index and fire from gemmology, colours representative of good stones.
 
-A stone varies more than any table; the birefringence of those that have it is left out.
+A stone varies more than any table. Of the birefringent ones in this table only tourmaline states both rays.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 from pellucid.media.crystals import MEDIA as _CRYSTALS
 from pellucid.media.formulas import Formula, PowerSeries
-from pellucid.media.medium import Medium
+from pellucid.media.medium import Medium, extraordinary_name
 
 Triple = tuple[float, float, float]
 
@@ -21,7 +22,6 @@ _GEMS: Final[tuple[tuple[str, float, float, Triple], ...]] = (
     ("aquamarine", 1.577, 0.014, (40.0, 8.0, 4.0)),
     ("topaz", 1.619, 0.014, (0.0, 0.0, 0.0)),
     ("blue topaz", 1.619, 0.014, (50.0, 12.0, 5.0)),
-    ("tourmaline", 1.624, 0.017, (250.0, 40.0, 200.0)),
     ("peridot", 1.654, 0.020, (60.0, 20.0, 150.0)),
     ("garnet", 1.790, 0.024, (60.0, 700.0, 600.0)),
     ("zircon", 1.925, 0.039, (0.0, 0.0, 0.0)),
@@ -50,12 +50,24 @@ def _tabled(name: str, n_d: float, fire: float, absorption: Triple) -> Medium:
 
 def _coloured(name: str, crystal: str, absorption: Triple) -> Medium:
     base = _BY_NAME[crystal]
-    return _gem(name, f"index of {crystal}: {base.source}", base.formula, base.valid_nm, absorption)
+    gem = _gem(name, f"index of {crystal}: {base.source}", base.formula, base.valid_nm, absorption)
+    if base.extraordinary is None:
+        return gem
+    other = base.extraordinary
+    ray = _gem(extraordinary_name(name), gem.source, other.formula, other.valid_nm, absorption)
+    return replace(gem, extraordinary=ray)
+
+
+def _pleochroic(name: str, n_o: float, n_e: float, fire: float, of_o: Triple, of_e: Triple) -> Medium:
+    """A stone whose colour depends on the polarisation."""
+    return replace(_tabled(name, n_o, fire, of_o), extraordinary=_tabled(extraordinary_name(name), n_e, fire, of_e))
 
 
 MEDIA: Final[tuple[Medium, ...]] = (
     *(_tabled(*row) for row in _GEMS),
     *(_coloured(*row) for row in _COLOURED_CRYSTALS),
+    # Strongly coloured tourmaline nearly quenches the ordinary ray: plates of it were the first polarisers.
+    _pleochroic("tourmaline", 1.644, 1.624, 0.017, (900.0, 480.0, 780.0), (250.0, 40.0, 200.0)),
     _gem(
         "amber",
         "representative index [read2005] and Abbe number (ours, of a resin), two-term Cauchy",

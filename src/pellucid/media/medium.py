@@ -21,7 +21,7 @@ CLEAR: Final = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True)
 class Medium:
-    """A homogeneous, isotropic medium (of a crystal: one of its rays).
+    """A homogeneous medium; one with an ``extraordinary`` ray is a uniaxial crystal.
 
     Indices and wavelengths are as the source states them: solids and liquids against air, gases and
     [daimon2007] against vacuum. The two differ by a factor of 1.00027, which no picture shows.
@@ -36,6 +36,8 @@ class Medium:
     absorption_per_m : extinction by absorption at the three channels, 1/m, >= 0.
     absorption_source : where the absorption comes from; ``representative`` says that it is an
         estimate of ours for a typical specimen, not a measurement.
+    extraordinary : of a uniaxial crystal, index and absorption for light polarised along the optic axis; the
+        medium itself then is the ordinary ray. A body is drawn with two images when its region has an ``optic_axis``.
     """
 
     name: str
@@ -45,6 +47,7 @@ class Medium:
     valid_nm: tuple[float, float]
     absorption_per_m: tuple[float, float, float] = CLEAR
     absorption_source: str = "treated as clear"
+    extraordinary: Medium | None = None
 
     def n(self, lambda_nm: ArrayLike) -> NDArray[np.float64]:
         """Refractive index at wavelengths in nm; same shape as the argument.
@@ -76,6 +79,25 @@ class Medium:
         return np.array(self.absorption_per_m, float)
 
     @property
+    def is_uniaxial(self) -> bool:
+        """Whether this is a crystal with an ordinary and an extraordinary ray."""
+        return self.extraordinary is not None
+
+    def n_e(self, lambda_nm: ArrayLike) -> NDArray[np.float64]:
+        """Extraordinary index at wavelengths in nm; the index itself where the medium is isotropic."""
+        return (self.extraordinary or self).n(lambda_nm)
+
+    @property
+    def n_e_rgb(self) -> NDArray[np.float64]:
+        """Extraordinary index at the three channels, (3,)."""
+        return (self.extraordinary or self).n_rgb
+
+    @property
+    def absorption_e_rgb_per_m(self) -> NDArray[np.float64]:
+        """Extinction of the extraordinary ray across the optic axis, at the three channels, 1/m, (3,)."""
+        return (self.extraordinary or self).absorption_rgb_per_m
+
+    @property
     def n_d(self) -> float:
         """Index at the helium d line, 587.6 nm."""
         return float(self.n(LINE_D_UM * 1e3))
@@ -88,22 +110,39 @@ class Medium:
 
     @property
     def is_dispersive(self) -> bool:
-        """Whether the index depends on wavelength."""
-        return not isinstance(self.formula, Constant)
+        """Whether an index depends on wavelength."""
+        other = self.extraordinary
+        return not isinstance(self.formula, Constant) or (other is not None and other.is_dispersive)
 
-    def with_absorption(self, rgb_per_m: Sequence[float], name: str | None = None) -> Medium:
+    def with_absorption(
+        self,
+        rgb_per_m: Sequence[float],
+        name: str | None = None,
+        extraordinary_rgb_per_m: Sequence[float] | None = None,
+    ) -> Medium:
         """The same index with another colour: extinction at the three channels, 1/m.
+
+        Parameters
+        ----------
+        extraordinary_rgb_per_m : of a crystal, extinction of the extraordinary ray; that of the ordinary one
+            when not given.
 
         Raises
         ------
-        SceneError : for anything but three finite values >= 0.
+        SceneError : for anything but three finite values >= 0; for an extraordinary ray of an isotropic medium.
         """
-        return replace(
+        changed = replace(
             self,
             name=name or f"{self.name}, coloured",
             absorption_per_m=checked_absorption(rgb_per_m),
             absorption_source="given by the user",
         )
+        if self.extraordinary is None:
+            if extraordinary_rgb_per_m is not None:
+                raise SceneError("absorption_e_rgb_per_m", f"{self.name} has no extraordinary ray", "leave it out")
+            return changed
+        other = rgb_per_m if extraordinary_rgb_per_m is None else extraordinary_rgb_per_m
+        return replace(changed, extraordinary=self.extraordinary.with_absorption(other, self.extraordinary.name))
 
 
 def checked_absorption(rgb_per_m: Sequence[float]) -> tuple[float, float, float]:
@@ -140,3 +179,34 @@ def constant(n: float, absorption_rgb_per_m: Sequence[float] = CLEAR, name: str 
         valid_nm=(0.0, math.inf),
         absorption_per_m=checked_absorption(absorption_rgb_per_m),
     )
+
+
+def uniaxial(
+    n_o: float,
+    n_e: float,
+    absorption_rgb_per_m: Sequence[float] = CLEAR,
+    absorption_e_rgb_per_m: Sequence[float] | None = None,
+    name: str | None = None,
+) -> Medium:
+    """A uniaxial crystal of two indices, the same at every wavelength.
+
+    Parameters
+    ----------
+    n_o, n_e : ordinary and extraordinary index, > 0.
+    absorption_rgb_per_m : extinction of the ordinary ray at the three channels, 1/m.
+    absorption_e_rgb_per_m : of the extraordinary ray across the axis; that of the ordinary one when not given.
+    name : how it is called in messages.
+
+    Raises
+    ------
+    SceneError : as :func:`constant`.
+    """
+    title = name or f"n_o = {n_o:g}, n_e = {n_e:g}"
+    other = absorption_rgb_per_m if absorption_e_rgb_per_m is None else absorption_e_rgb_per_m
+    ray = constant(n_e, other, extraordinary_name(title))
+    return replace(constant(n_o, absorption_rgb_per_m, title), extraordinary=ray)
+
+
+def extraordinary_name(name: str) -> str:
+    """What the extraordinary ray of a crystal is called."""
+    return f"{name}, extraordinary ray"
