@@ -33,20 +33,23 @@ class Region:
     medium : what fills it; a name, a `Medium` or a constant index.
     name : for messages.
     emission : radiance gained per metre, linear RGB, >= 0.
+    scattering : scattering coefficient, linear RGB, 1/m, >= 0.
+    anisotropy : mean cosine of scattering, in (-1, 1).
     """
 
     sdf: Voxels = field(repr=False)
     medium: Medium
     name: str = ""
     emission: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    scattering: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    anisotropy: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "sdf", _voxels("sdf", self.sdf, channels=None))
         object.__setattr__(self, "medium", media.resolve(self.medium))
-        light = np.asarray(self.emission, dtype=np.float64)
-        if light.shape != (3,) or not np.isfinite(light).all() or (light < 0.0).any():
-            raise SceneError("emission", f"is {self.emission}", "give three numbers, 0 or more")
-        object.__setattr__(self, "emission", tuple(float(v) for v in light))
+        object.__setattr__(self, "emission", _not_negative("emission", self.emission))
+        object.__setattr__(self, "scattering", _not_negative("scattering", self.scattering))
+        object.__setattr__(self, "anisotropy", _mean_cosine("anisotropy", self.anisotropy))
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,9 +65,10 @@ class Volume:
     ambient_n : index outside.
     delta_n : (Z, Y, X) index minus `ambient_n` at 587.56 nm, or (Z, Y, X, 3) at the RGB wavelengths. A
         difference, because float32 cannot hold n of a gas well.
-    absorption, scattering : (Z, Y, X, 3) coefficients, 1/m, >= 0.
-    anisotropy : (Z, Y, X) mean cosine of scattering, in (-1, 1).
-    emission : (Z, Y, X, 3) radiance gained per metre, >= 0.
+    absorption, scattering : (Z, Y, X, 3) coefficients, 1/m, >= 0. With `regions` they are added to what the region
+        at a place has, also outside all regions: smoke around a body.
+    anisotropy : (Z, Y, X) mean cosine of what `scattering` scatters, in (-1, 1).
+    emission : (Z, Y, X, 3) radiance gained per metre, >= 0; added as they are.
     opaque : (Z, Y, X, 4) linear RGB and coverage 0 to 1 of opaque matter.
     regions : bodies; the **first** whose distance is negative owns a point. With `delta_n` as well, that is the index
         inside the first body (a graded lens with a sharp surface), which then should be continued past the surface.
@@ -259,13 +263,16 @@ class Volume:
 
         A voxel is covered by `clamp(0.5 - sdf / h, 0, 1)`, h the mean voxel edge: the covered share of a cube cut by a
         plane parallel to a face. Of what earlier regions leave uncovered, each takes its share, so two
-        bodies that touch leave no gap.
+        bodies that touch leave no gap. Fields of the volume are added to what the bodies have; of all that scatters in
+        a voxel the anisotropy is the mean, weighted by scattering.
         """
         if not self.regions:
             return self
         channels = 3 if self.is_dispersive and by_channel else 1
         delta = np.zeros((*self.shape, channels))
-        absorption, emission = np.zeros((*self.shape, 3)), np.zeros((*self.shape, 3))
+        absorption, emission, scattering = (_filled(getattr(self, name), (*self.shape, 3)) for name in _ADDED)
+        # Sum of scattering times anisotropy: the mean cosine of a mixture is the mean of those of its parts.
+        forward = scattering.mean(axis=-1) * _filled(self.anisotropy, self.shape)
         free = np.ones(self.shape)
         graded = None if self.delta_n is None else self.delta_n.reshape(*self.shape, -1).astype(np.float64)
         if graded is not None and graded.shape[3] > channels:
@@ -278,11 +285,17 @@ class Volume:
             delta += share * (graded if number == 0 and graded is not None else inside)
             absorption += share * np.asarray(region.medium.absorption_rgb_per_m)
             emission += share * np.asarray(region.emission)
+            scattering += share * np.asarray(region.scattering)
+            forward += share[..., 0] * np.mean(region.scattering) * region.anisotropy
+        strength = scattering.mean(axis=-1)
+        anisotropy = np.divide(forward, strength, out=np.zeros(self.shape), where=strength > 0.0)
         return Volume(
             self.extent_m,
             self.ambient_n,
             delta_n=(delta if channels == 3 else delta[..., 0]).astype(np.float32),
             absorption=absorption.astype(np.float32) if absorption.any() else None,
+            scattering=scattering.astype(np.float32) if scattering.any() else None,
+            anisotropy=anisotropy.astype(np.float32) if anisotropy.any() else None,
             emission=emission.astype(np.float32) if emission.any() else None,
             opaque=self.opaque,
         )
@@ -306,6 +319,31 @@ _CHANNELS: dict[str, int | None] = {
     "emission": 3,
     "opaque": 4,
 }
+
+# Fields that add up with the constants of regions, in the order that `rasterised` names them in.
+_ADDED = ("absorption", "emission", "scattering")
+
+
+def _filled(values: Voxels | None, shape: tuple[int, ...]) -> npt.NDArray[np.float64]:
+    """A copy to add to; zeros where there is no field."""
+    return np.zeros(shape) if values is None else values.astype(np.float64)
+
+
+def _not_negative(name: str, values: Any) -> tuple[float, float, float]:
+    """Three finite numbers, 0 or more."""
+    try:
+        rgb = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        rgb = np.full(3, np.nan)
+    if rgb.shape != (3,) or not np.isfinite(rgb).all() or (rgb < 0.0).any():
+        raise SceneError(name, f"is {values}", "give three numbers, 0 or more")
+    return float(rgb[0]), float(rgb[1]), float(rgb[2])
+
+
+def _mean_cosine(name: str, value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not abs(np.float32(value)) < 1.0:
+        raise SceneError(name, f"is {value!r}", "a mean cosine lies in (-1, 1)")
+    return float(value)
 
 
 def _rounding(voxels: float) -> float:

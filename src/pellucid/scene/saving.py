@@ -175,8 +175,8 @@ def _volume(thing: RefractiveVolume, label: str, where: str, beside: Sidecars) -
     regions = []
     for i, region in enumerate(volume.regions):
         arrays[f"region_{i}"] = region.sdf
-        emission = [float(e) for e in region.emission]
-        regions.append({"medium": describe_medium(region.medium, where), "name": region.name, "emission": emission})
+        matter = _stated(region, ("name", "emission", "scattering", "anisotropy"))
+        regions.append({"medium": describe_medium(region.medium, where), **matter})
     source = {"volume": beside.arrays(label, arrays), "extent_m": [float(e) for e in volume.extent_m]}
     source |= {"ambient_n": float(volume.ambient_n), **_stated(thing, ("center_m",))}
     return source | ({"regions": regions} if regions else {})

@@ -189,6 +189,8 @@ class RegionFile(Model):
     medium: Substance
     name: StrictStr = UNSET
     emission: Triple = UNSET
+    scattering: Triple = UNSET
+    anisotropy: Number = UNSET
 
 
 class StoredVolume(VolumeBase):

@@ -40,6 +40,11 @@ fn environment_irradiance(normal_ws: vec3f) -> vec3f {
     return frame.environment_intensity * max(e, vec3f(0.0));
 }
 
+// Radiance averaged over all directions: the irradiance averaged over all normals is pi times it
+fn environment_mean_radiance() -> vec3f {
+    return frame.environment_intensity * max(frame.environment_sh[0].rgb, vec3f(0.0)) / ENVIRONMENT_PI;
+}
+
 // Mean radiance that a mirror of GGX roughness alpha shows in a direction, see environment.glossy_levels
 fn environment_glossy(direction_ws: vec3f, alpha: f32) -> vec3f {
     if alpha < ENVIRONMENT_GLOSSY_ALPHA {

@@ -28,6 +28,7 @@ class Body:
     quality : how carefully rays are bent.
     meets_meshes : opaque meshes reach into its box.
     draws : for each band of the picture one DrawParams buffer for each wavelength.
+    light : textures "fluence_field" and "light_field" over the prepared box, once light has been followed through it.
     """
 
     objects: tuple[RefractiveVolume, ...]
@@ -39,3 +40,4 @@ class Body:
     quality: Quality
     meets_meshes: bool = False
     draws: list[list[Any]] = field(default_factory=list)
+    light: dict[str, Any] = field(default_factory=dict)

@@ -35,6 +35,8 @@ VolumeParams = struct(
         ("region_n", "vec4f"),
         ("region_absorption", ("vec4f", MAX_REGIONS)),  # 1/m of the world
         ("region_emission", ("vec4f", MAX_REGIONS)),  # radiance per world metre
+        ("region_scattering", ("vec4f", MAX_REGIONS)),  # rgb in 1/m of the world, anisotropy
+        ("matter_half", "vec3f"),  # of the box that the fields of matter fill, object metres
     ]
 )
 

@@ -180,7 +180,7 @@ class EikonalTechnique:
                 "draw": draws[number],
             }
             encoder.copy_buffer_to_buffer(self._no_looks, 0, self._lists["look_queue"], 0, LookCount.itemsize)
-            volume = {**body.textures.channels[channel], "volume": body.uniforms[channel]}
+            volume = {**body.textures.channels[channel], **body.light, "volume": body.uniforms[channel]}
             blocks = (-(-width // 8), -(-height // 8), 1)
             march = self._march_kernel(body)
             march.run(blocks, {**shared, **volume}, encoder, timer, "eikonal march")

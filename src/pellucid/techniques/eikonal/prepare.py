@@ -60,9 +60,12 @@ class Prepared:
     distance: np.ndarray | None  # (Z, Y, X, regions) float32, voxels
     absorption: np.ndarray | None  # (Z, Y, X, 3), 1/m
     emission: np.ndarray | None  # (Z, Y, X, 3), radiance per metre
+    scattering: np.ndarray | None  # (Z, Y, X, 4), RGB in 1/m, then the anisotropy
     opaque: np.ndarray | None  # (Z, Y, X, 4)
     region_absorption: tuple[tuple[float, float, float], ...]
     region_emission: tuple[tuple[float, float, float], ...]
+    region_scattering: tuple[tuple[float, float, float, float], ...]  # as `scattering`
+    matter_extent_m: tuple[float, float, float]  # edges of the box that the fields fill: less than all where padded
     boundary_on_per_m: float
     boundary_off_per_m: float
 
@@ -111,14 +114,20 @@ def prepare(
 
 
 def _prepare_sharp(volume: Volume, gradient: str, method: str, lambdas_nm: Sequence[float]) -> Prepared:
+    matter_extent_m = volume.extent_m
     volume = _closed_at_box(volume)
     regions = volume.regions
     graded = volume.delta_n is not None
-    fields = [f for f in (volume.absorption, volume.emission, volume.opaque) if f is not None] if graded else []
-    straight = None if graded else _distance_to_opaque(volume)
+    scattering = _phased(volume)
+    matter = [f for f in (volume.absorption, volume.emission, scattering) if f is not None]
+    straight = None if graded else _straight_radii(volume, matter)
+    matter += [] if volume.opaque is None else [volume.opaque]
     # Wavelengths that share a field share what is made of it.
     deltas = _fields_at(volume.delta_n, lambdas_nm) if volume.delta_n is not None else [None] * len(lambdas_nm)
-    forces = {id(d): straight if d is None else _force(d, fields, volume, gradient, method) for d in _unlike(deltas)}
+    forces = {
+        id(d): straight if d is None else _force(d, matter, volume, gradient, method, scattering)
+        for d in _unlike(deltas)
+    }
     channels = [
         Channel(forces[id(delta)], delta, indices_at(regions, lambda_nm), lambda_nm)
         for delta, lambda_nm in zip(deltas, lambdas_nm, strict=True)
@@ -135,9 +144,12 @@ def _prepare_sharp(volume: Volume, gradient: str, method: str, lambdas_nm: Seque
         distance=distance,
         absorption=volume.absorption,
         emission=volume.emission,
+        scattering=scattering,
         opaque=volume.opaque,
         region_absorption=tuple(_rgb(r.medium.absorption_rgb_per_m) for r in regions),
         region_emission=tuple(_rgb(r.emission) for r in regions),
+        region_scattering=tuple((*_rgb(r.scattering), r.anisotropy) for r in regions),
+        matter_extent_m=matter_extent_m,
         boundary_on_per_m=np.inf,
         boundary_off_per_m=0.0,
     )
@@ -150,18 +162,19 @@ def _prepare_smooth(
     assert raw.delta_n is not None
     deltas = _fields_at(raw.delta_n, lambdas_nm)
     pad = _padding(deltas, smoothing)
-    absorption, emission, opaque = (_padded(f, pad) for f in (raw.absorption, raw.emission, raw.opaque))
+    fields = (raw.absorption, raw.emission, _phased(raw), raw.opaque)
+    absorption, emission, scattering, opaque = (_padded(f, pad) for f in fields)
     shape = np.array(raw.shape[::-1])
     extent = tuple(float(e) for e in np.array(raw.extent_m) * (shape + 2 * pad) / shape)
     jump = _surface_jump(deltas[len(deltas) // 2])
-    others = [f for f in (absorption, emission, opaque) if f is not None]
+    others = [f for f in (absorption, emission, scattering, opaque) if f is not None]
     grid = _Grid(raw.voxel_m, raw.ambient_n)
     made: dict[int, tuple[np.ndarray, np.ndarray]] = {}
     for delta in _unlike(deltas):
         soft = np.pad(delta, pad)
         if smoothing > 0.0:
             soft = gaussian(soft, smoothing)
-        made[id(delta)] = _force(soft, others, grid, gradient, method), soft
+        made[id(delta)] = _force(soft, others, grid, gradient, method, scattering), soft
     channels = [Channel(*made[id(d)], (), lambda_nm) for d, lambda_nm in zip(deltas, lambdas_nm, strict=True)]
     steepest = jump / (min(raw.voxel_m) * np.sqrt(2 * np.pi * (smoothing**2 + 0.5))) if jump else np.inf
     return Prepared(
@@ -174,9 +187,12 @@ def _prepare_smooth(
         distance=None,
         absorption=absorption,
         emission=emission,
+        scattering=scattering,
         opaque=opaque,
         region_absorption=(),
         region_emission=(),
+        region_scattering=(),
+        matter_extent_m=(extent[0], extent[1], extent[2]),
         boundary_on_per_m=float(EVENT_ON * steepest),
         boundary_off_per_m=float(EVENT_OFF * steepest) if jump else 0.0,
     )
@@ -278,10 +294,34 @@ def _padded(field: np.ndarray | None, pad: int, mode: Literal["constant", "edge"
     return np.pad(field, [(pad, pad)] * 3 + [(0, 0)] * (field.ndim - 3), mode=mode)
 
 
+def _phased(volume: Volume) -> np.ndarray | None:
+    """Scattering and its anisotropy as one field (Z, Y, X, 4).
+
+    Where nothing scatters, the anisotropy of the nearest place that does: else that of a cloud would fade at its rim.
+    """
+    if volume.scattering is None:
+        return None
+    g = np.zeros(volume.shape, np.float32) if volume.anisotropy is None else volume.anisotropy
+    empty = ~volume.scattering.any(axis=-1)
+    if g.any() and empty.any() and not empty.all():
+        from scipy.ndimage import distance_transform_edt
+
+        nearest = distance_transform_edt(empty, return_distances=False, return_indices=True)
+        g = g[tuple(nearest)]
+    return np.concatenate([volume.scattering, g[..., None]], axis=-1)
+
+
 def _force(
-    delta: np.ndarray, others: Sequence[np.ndarray], grid: Volume | _Grid, gradient: str, method: str
+    delta: np.ndarray,
+    others: Sequence[np.ndarray],
+    grid: Volume | _Grid,
+    gradient: str,
+    method: str,
+    scattering: np.ndarray | None,
 ) -> np.ndarray:
     """The field that bends rays, with the radius in which nothing at all changes in its fourth channel.
+
+    No radius where light is scattered: how much of it there is differs from place to place.
 
     n^2/2 = a^2/2 + (a d + d^2/2) with d = n - a: the bracket keeps its digits when d is 1e-4 [sharma1982, eq. 3].
     """
@@ -292,17 +332,24 @@ def _force(
     fields = [delta, force, *others]
     tolerances = [CONSTANT_WITHIN * float(np.ptp(f)) for f in fields]
     radius = homogeneous_distance(fields, grid.voxel_m, tolerances) / min(grid.voxel_m)
+    if scattering is not None:
+        radius[scattering[..., :3].any(axis=-1)] = 0.0
     return np.concatenate([force, radius[..., None].astype(np.float32)], axis=-1)
 
 
-def _distance_to_opaque(volume: Volume) -> np.ndarray | None:
-    """For straight rays only opaque voxels need a radius to be found by."""
-    if volume.opaque is None:
+def _straight_radii(volume: Volume, matter: Sequence[np.ndarray]) -> np.ndarray | None:
+    """What straight rays need of radii, voxels: in the fourth channel to opaque voxels, in the first to other matter.
+
+    No force bends them, so its channels are free.
+    """
+    if volume.opaque is None and not matter:
         return None
-    radius = homogeneous_distance([volume.opaque], volume.voxel_m) / min(volume.voxel_m)
-    force = np.zeros((*volume.shape, 4), np.float32)
-    force[..., 3] = radius
-    return force
+    radii = np.zeros((*volume.shape, 4), np.float32)
+    for channel, fields in ((0, matter), (3, [] if volume.opaque is None else [volume.opaque])):
+        if fields:
+            tolerances = [CONSTANT_WITHIN * float(np.ptp(f)) for f in fields]
+            radii[..., channel] = homogeneous_distance(fields, volume.voxel_m, tolerances) / min(volume.voxel_m)
+    return radii
 
 
 def _surface_jump(delta: np.ndarray) -> float:

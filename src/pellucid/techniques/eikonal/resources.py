@@ -54,6 +54,10 @@ def upload(device: Device, prepared: Prepared) -> VolumeTextures:
     shared["distance_field"] = texture(prepared.distance, 1 if count == 1 else 4, False, "distance")
     shared["absorption_field"] = texture(prepared.absorption, 4, True, "absorption")
     shared["emission_field"] = texture(prepared.emission, 4, True, "emission")
+    shared["scattering_field"] = texture(prepared.scattering, 4, True, "scattering")
+    # No light, until some has been followed through the volume.
+    shared["fluence_field"] = texture(None, 4, True, "fluence")
+    shared["light_field"] = texture(None, 4, True, "direction of light")
     shared["opaque_field"] = texture(prepared.opaque, 4, True, "opaque")
     made: dict[tuple[int, int], tuple[dict[str, Any], float, float]] = {}
     rows = []
@@ -91,13 +95,19 @@ def _fit(array: np.ndarray, channels: int) -> np.ndarray:
     return data
 
 
+def scatters(prepared: Prepared) -> bool:
+    """Whether anything in a volume scatters light."""
+    return prepared.scattering is not None or any(any(rgb_g[:3]) for rgb_g in prepared.region_scattering)
+
+
 def constants_of(prepared: Prepared, quality: Quality) -> dict[str, float]:
     """The override constants that the march of a volume is compiled with."""
     return {
         "EULER": float(quality.method == "euler"),
         "ADAPTIVE": float(quality.adaptive),
-        "ABSORBS": float(prepared.absorption is not None),
-        "EMITS": float(prepared.emission is not None),
+        "ABSORBS": float(prepared.absorption is not None or (prepared.graded and np.any(prepared.region_absorption))),
+        "EMITS": float(prepared.emission is not None or (prepared.graded and np.any(prepared.region_emission))),
+        "SCATTERS": float(scatters(prepared)),
         "BLOCKS": float(prepared.opaque is not None),
     }
 
@@ -140,10 +150,12 @@ def parameters(
     out["max_steps"] = quality.max_steps
     out["bounces"] = quality.bounces
     out["writes_depth"] = prepared.sharp or np.isfinite(prepared.boundary_on_per_m)
+    out["matter_half"] = 0.5 * np.array(prepared.matter_extent_m)
     out["region_count"] = len(row.region_n)
     for k, n in enumerate(row.region_n):
         out["region_n"][k] = n
         out["region_absorption"][k, :3] = prepared.region_absorption[k]
         out["region_emission"][k, :3] = prepared.region_emission[k]
+        out["region_scattering"][k] = prepared.region_scattering[k]
     assert out.dtype.itemsize == VolumeParams.itemsize
     return out

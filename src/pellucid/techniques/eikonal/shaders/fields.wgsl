@@ -31,6 +31,12 @@ fn emission_at(x: vec3f) -> vec3f {
     return textureSampleLevel(emission_field, volume_sampler, texture_position(x), 0.0).xyz;
 }
 
+// rgb: scattering, 1/world metre; w: mean cosine of it.
+fn scattering_at(x: vec3f) -> vec4f {
+    if (!SCATTERS) { return vec4f(0.0); }
+    return textureSampleLevel(scattering_field, volume_sampler, texture_position(x), 0.0);
+}
+
 fn opaque_at(x: vec3f) -> vec4f {
     if (!BLOCKS) { return vec4f(0.0); }
     return textureSampleLevel(opaque_field, volume_sampler, texture_position(x), 0.0);

@@ -5,7 +5,6 @@
 
 override GRADED: bool = false;     // the first region (or the whole box) has an index that varies
 
-const AMBIENT = 4u;
 const FIRST_STRIDE = 0.25;         // voxels: leaves the surface that the ray stands on
 const SHORTEST_STRIDE = 0.3;       // voxels
 const CAUTION = 0.9;               // of the sampled distance, whose interpolation is not exactly a distance

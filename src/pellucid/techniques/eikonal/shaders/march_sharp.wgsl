@@ -11,7 +11,8 @@ fn enter_sharp(walk: ptr<function, Walk>) {
     redirect(walk, normalize((*walk).p0), n);
 }
 
-// Go on until the ray leaves the box, stands at an interface, meets something opaque, or has turned by `pause`.
+// Go on until the ray leaves the box, stands at an interface, meets something opaque, or has turned by `pause`. On a curved piece
+// matter has acted by then, on a straight one it has not: see `gather_straight`.
 fn march_sharp(walk: ptr<function, Walk>, crossing: ptr<function, Crossing>) -> u32 {
     if (is_graded((*walk).region)) { return march_graded(walk, crossing); }
     return march_straight(walk, crossing);

@@ -8,31 +8,34 @@ struct Passage {
     inside: bool,
     p_before: vec3f,     // momentum in the calm before: followed until the passage begins
     light_before: vec3f, // transmittance in the calm before: what a mirror image at the boundary is attenuated by
+    glow_before: vec3f,  // radiance picked up by then
     x_steepest: vec3f,
     steepest2: f32,
 }
 
 fn begin_passage(walk: Walk) -> Passage {
-    return Passage(false, walk.p0, walk.transmittance, walk.x, 0.0);
+    return Passage(false, walk.p0, walk.transmittance, walk.emitted, walk.x, 0.0);
 }
 
-// Go on until the ray leaves, meets something opaque, has passed a boundary, or has turned by `pause`.
-fn march_smooth(walk: ptr<function, Walk>, passage: ptr<function, Passage>, crossing: ptr<function, Crossing>) -> u32 {
+// Go on until the ray leaves, meets something opaque, has passed a boundary, has turned by `pause`, or is `limit` object metres away.
+fn march_smooth(walk: ptr<function, Walk>, passage: ptr<function, Passage>, crossing: ptr<function, Crossing>, limit: f32) -> u32 {
+    let x_begin = (*walk).x;
     let p_begin = (*walk).p0 + (*walk).q;
     var event = EXHAUSTED;
     var over = false;
     while (event == EXHAUSTED && !over && (*walk).steps < volume.max_steps) {
         // Near a face of the box a step is cut to where the ray leaves it; this needs divisions that the others are spared.
         let room = proxy_span((*walk).x, normalize((*walk).p0 + (*walk).q)).y;
-        var blocked = take_step(walk, room).opaque_at_probe;
+        let left = select(NO_LIMIT, limit - distance((*walk).x, x_begin), MEETS_MESHES);
+        var blocked = take_step(walk, max(min(room, left), 0.0)).opaque_at_probe;
         over = note_passage(walk, passage);
         var turned = has_turned(walk, p_begin);
-        while (!blocked && !over && !turned && is_clear_of_faces(walk) && (*walk).steps < volume.max_steps) {
+        while (!blocked && !over && !turned && is_clear_of_faces(walk) && left >= NO_LIMIT && (*walk).steps < volume.max_steps) {
             blocked = take_step(walk, NO_LIMIT).opaque_at_probe;
             over = note_passage(walk, passage);
             turned = has_turned(walk, p_begin);
         }
-        event = select(event, PAUSED, turned);
+        event = select(event, PAUSED, turned || left <= 1e-4 * volume.voxel);
         event = select(event, OPAQUE, blocked);
         event = select(event, LEFT, room <= 1e-4 * volume.voxel);
     }
@@ -60,7 +63,8 @@ fn note_passage(walk: ptr<function, Walk>, passage: ptr<function, Passage>) -> b
     let over = (*passage).inside && flat;
     let calm = !(*passage).inside && flat;
     (*passage).p_before = select((*passage).p_before, (*walk).p0 + (*walk).q, calm);
-    if (ABSORBS) { (*passage).light_before = select((*passage).light_before, (*walk).transmittance, calm); }
+    if (ABSORBS || SCATTERS) { (*passage).light_before = select((*passage).light_before, (*walk).transmittance, calm); }
+    if (EMITS || SCATTERS) { (*passage).glow_before = select((*passage).glow_before, (*walk).emitted, calm); }
     (*passage).x_steepest = select((*passage).x_steepest, (*walk).x, steeper);
     (*passage).steepest2 = select((*passage).steepest2, slope2, steeper);
     (*passage).inside = ((*passage).inside || begins) && !over;

@@ -4,8 +4,8 @@
 //!import techniques/eikonal/shaders/interfaces
 //!import techniques/eikonal/shaders/gather
 
-// Sphere tracing along a straight line. Only the distance along it is carried from step to step; surfaces are worked out and
-// matter acts once, behind the loop.
+// Sphere tracing along a straight line. Only the distance along it is carried from step to step; surfaces are worked out
+// once, behind the loop. Matter does not act here: how much of the piece counts is the caller's to say (`gather_straight`).
 fn march_straight(walk: ptr<function, Walk>, crossing: ptr<function, Crossing>) -> u32 {
     let start = (*walk).x;
     let d = normalize((*walk).p0);
@@ -30,7 +30,6 @@ fn march_straight(walk: ptr<function, Walk>, crossing: ptr<function, Crossing>) 
     }
     (*walk).steps = steps;
     (*walk).x = start + t * d;
-    gather_region(walk, t);
     return event;
 }
 
@@ -60,11 +59,43 @@ fn next_change(start: vec3f, d: vec3f, from_t: f32, room: f32, signs: u32, steps
     return found;
 }
 
-fn gather_region(walk: ptr<function, Walk>, length_os: f32) {
+// What matter does along the first `length_os` object metres of a straight piece that began at `start`.
+fn gather_straight(walk: ptr<function, Walk>, start: vec3f, length_os: f32) {
     let n = length((*walk).p0);
-    if ((*walk).region >= AMBIENT) {
-        (*walk).optical_path += n * length_os * volume.scale;
-    } else {
+    if (ABSORBS || EMITS || SCATTERS) {
+        gather_fields(walk, start, length_os);
+    } else if ((*walk).region < AMBIENT) {
         gather(walk, volume.region_absorption[(*walk).region].xyz, volume.region_emission[(*walk).region].xyz, n, length_os);
+    } else {
+        (*walk).optical_path += n * length_os * volume.scale;
     }
+}
+
+// By the midpoint rule, a voxel at a time, and in one step where matter stays the same and scatters nothing. Fields end where
+// the box of the volume ends, which is before the margin that a body cut off there has got.
+fn gather_fields(walk: ptr<function, Walk>, start: vec3f, length_os: f32) {
+    let n = length((*walk).p0);
+    let d = (*walk).p0 / n;
+    let span = intersect_box(start, d, volume.matter_half);
+    let from_t = clamp(span.x, 0.0, length_os);
+    let to_t = clamp(span.y, from_t, length_os);
+    (*walk).optical_path += n * (length_os - (to_t - from_t)) * volume.scale;
+    var t = from_t;
+    while (t < to_t) {
+        let stride = min(volume.voxel, to_t - t);
+        let x = start + (t + 0.5 * stride) * d;
+        let matter = matter_at(x, (*walk).region);
+        let glow = in_scattered(x, d, n, matter.scattering);
+        let alike = select(matter_radius_at(x), 0.0, any(matter.scattering.rgb > vec3f(0.0)));
+        let reach = min(0.5 * stride + max(0.5 * stride, alike), to_t - t);
+        gather(walk, matter.extinction, matter.emission + glow, n, reach);
+        t += reach;
+    }
+}
+
+// Radius around x in which matter stays the same, object metres; see `force_field`.
+fn matter_radius_at(x: vec3f) -> f32 {
+    let here = force_at(x);
+    if (GRADED) { return here.radius; }
+    return here.force.x * volume.voxel;
 }

@@ -49,8 +49,9 @@ fn take_step(walk: ptr<function, Walk>, limit: f32) -> Step {
     }
     (*walk).radius = max(here.radius - after, 0.0);
     (*walk).steps += 1u;
-    if (ABSORBS || EMITS) {
-        gather(walk, absorption_at(probe), emission_at(probe), kept_n, reach);
+    if (ABSORBS || EMITS || SCATTERS) {
+        let p_after = (*walk).p0 + (*walk).q;
+        gather_at(walk, probe, normalize(p + p_after), kept_n, reach);
     } else {
         (*walk).optical_path += kept_n * reach * volume.scale;
     }

@@ -38,7 +38,7 @@ fn follow(ray: ptr<function, TraceRay>, approach: f32) {
     var crossing = Crossing();
     var passage = begin_passage(walk);
     while (event == PAUSED || event == INTERFACE) {
-        if (SHARP) { event = march_sharp(&walk, &crossing); } else { event = march_smooth(&walk, &passage, &crossing); }
+        if (SHARP) { event = trace_sharp(&walk, &crossing); } else { event = march_smooth(&walk, &passage, &crossing, NO_LIMIT); }
         if (event != INTERFACE) { continue; }
         // The path that a picture follows first: refraction, or reflection where that is total.
         let split = split_at(crossing);
@@ -57,4 +57,11 @@ fn follow(ray: ptr<function, TraceRay>, approach: f32) {
     (*ray).transmittance = walk.transmittance;
     (*ray).status = event;
     (*ray).steps = walk.steps;
+}
+
+fn trace_sharp(walk: ptr<function, Walk>, crossing: ptr<function, Crossing>) -> u32 {
+    let start = (*walk).x;
+    let event = march_sharp(walk, crossing);
+    if (!is_graded((*walk).region)) { gather_straight(walk, start, distance(start, (*walk).x)); }
+    return event;
 }

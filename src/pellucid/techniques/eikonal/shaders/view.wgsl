@@ -8,10 +8,11 @@
 //!import techniques/eikonal/shaders/splitting
 //!import techniques/eikonal/shaders/bindings
 //!import techniques/eikonal/shaders/fields
+//!import techniques/eikonal/shaders/scatter
 
 struct Seen {
     radiance: vec3f,
-    distance: f32,      // along the viewing ray to the first surface, world metres
+    distance: f32,      // along the viewing ray to the first surface, world metres; negative: none, as in smoke
     touched: bool,      // false: the ray passed as if the volume were not there
 }
 
@@ -104,6 +105,7 @@ fn opaque_ending(x: vec3f, d: vec3f, weight: vec3f) -> Ending {
 fn enter(pixel: vec2u, ray: CameraRay) -> ViewRay {
     look_pixel = pixel.y * draw.size.x + pixel.x;
     look_used = 0u;
+    ambient_radiance = environment_mean_radiance();
     var entry = to_object(ray);
     let before = textureLoad(screen_depth, draw.corner + pixel, 0);
     entry.meets = entry.meets && depth_of(ray.origin + (entry.distance + volume.scale * volume.voxel) * ray.direction) >= before;
@@ -114,8 +116,9 @@ fn enter(pixel: vec2u, ray: CameraRay) -> ViewRay {
 fn keep(pixel: vec2u, ray: CameraRay, seen: Seen) {
     let before = textureLoad(screen_depth, draw.corner + pixel, 0);
     let own = depth_of(ray.origin + seen.distance * ray.direction);
-    let visible = seen.touched && own >= before;
-    let depth = select(UNSEEN, select(before, own, volume.writes_depth != 0u), visible);
+    let has_surface = seen.distance >= 0.0;
+    let visible = seen.touched && (own >= before || !has_surface);
+    let depth = select(UNSEEN, select(before, own, has_surface), visible);
     drawn[look_pixel] = vec4f(seen.radiance, depth);
     if (look_used == 0u) { look_values[look_pixel] = vec4f(0.0); }
     look_values[look_pixel].w = f32(look_used);

@@ -41,18 +41,24 @@ fn look_into(entry: ViewRay) -> Seen {
         walk.emitted = vec3f(0.0);
         walk.transmittance = vec3f(1.0);
         walk.steps = 0u;
+        let straight = !is_graded(walk.region);
         let event = march_sharp(&walk, &crossing);
         let d = normalize(walk.p0 + walk.q);
         // A last piece that is straight is looked along as a whole: a mesh may lie just where it leaves the box.
-        let straight_out = event == LEFT && !is_graded(walk.region);
+        let straight_out = event == LEFT && straight;
         let hit = mesh_between(from_x, walk.x);
         let blocked = hit.valid && !straight_out;
-        let untouched = first < 0.0 && (blocked || event == LEFT || event == EXHAUSTED);
-        if (untouched) { return Seen(vec3f(0.0), 0.0, false); }
-        first = select(first, entry.distance + distance(entry.x, walk.x) * volume.scale, first < 0.0);
+        let piece = distance(from_x, walk.x);
+        let seen_piece = select(piece, min(hit.t / volume.scale + contact(), piece), hit.valid);
+        if (straight) { gather_straight(&walk, from_x, seen_piece); }
+        // Outside of all bodies up to here: smoke is seen, but has no surface.
+        let meets_body = !blocked && (event == INTERFACE || event == OPAQUE);
+        let unchanged = all(walk.transmittance == vec3f(1.0)) && all(walk.emitted == vec3f(0.0));
+        if (first < 0.0 && !meets_body && unchanged) { return Seen(vec3f(0.0), -1.0, false); }
+        first = select(first, entry.distance + distance(entry.x, walk.x) * volume.scale, first < 0.0 && meets_body);
 
-        // The piece up to a mesh was homogeneous, or short: it keeps its share of the exponent.
-        let part = select(1.0, hit.t / max(distance(from_x, walk.x) * volume.scale, 1e-20), blocked);
+        // A curved piece up to a mesh was short: it keeps its share of the exponent.
+        let part = select(1.0, seen_piece / max(piece, 1e-20), blocked && !straight);
         radiance += weight * walk.emitted * part;
         weight *= pow(max(walk.transmittance, vec3f(1e-30)), vec3f(part));
 

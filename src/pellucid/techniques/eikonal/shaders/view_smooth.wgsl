@@ -21,38 +21,57 @@ fn look_through(entry: ViewRay) -> Seen {
     var radiance = vec3f(0.0);
     var mirrored = Ending();  // at the first boundary; it is looked along like the ray that goes through
     var first = -1.0;         // distance to the first boundary
-    var changed = -1.0;       // distance to where the volume first does anything
+    var bent = -1.0;          // distance to where the ray is first bent
     var event = PAUSED;
     var from_x = entry.x;
+    var towards = vec3f(0.0); // from there to a mesh
+    var limit = NO_LIMIT;     // object metres from there to a mesh
     var blocked = false;
     while ((event == PAUSED || event == INTERFACE) && largest(walk.transmittance) > 1e-4 && !blocked) {
-        from_x = walk.x;
-        event = march_smooth(&walk, &passage, &crossing);
-        blocked = mesh_between(from_x, walk.x).valid;
-        if (changed < 0.0 && has_changed(walk)) { changed = entry.distance + distance(entry.x, from_x) * volume.scale; }
-        let split = split_at(crossing);
-        let reflectance = select(0.0, split.reflectance, event == INTERFACE && !blocked);
-        // Without absorption what has been split off so far is all that dims the light.
-        let reflected = reflectance * select(walk.transmittance, passage.light_before, ABSORBS);
-        if (reflectance > 0.0 && first < 0.0) {
-            first = entry.distance + distance(entry.x, passage.x_steepest) * volume.scale;
-            mirrored = Ending(LOOK_ALONG, passage.x_steepest, split.reflected, reflected);
+        let before = walk;
+        let passage_before = passage;
+        event = march_smooth(&walk, &passage, &crossing, limit);
+        blocked = limit < NO_LIMIT;
+        let hit = mesh_between(before.x, walk.x);
+        if (hit.valid && !blocked) {
+            // Once more, up to the mesh only: what matter does behind it is not seen.
+            from_x = before.x;
+            towards = walk.x - before.x;
+            limit = hit.t / volume.scale + contact();
+            walk = before;
+            passage = passage_before;
+            event = PAUSED;
         } else {
-            radiance += reflected * far_radiance(split.reflected);
+            if (bent < 0.0 && any(walk.q != vec3f(0.0))) { bent = entry.distance + distance(entry.x, before.x) * volume.scale; }
+            let split = split_at(crossing);
+            let reflectance = select(0.0, split.reflectance, event == INTERFACE && !blocked);
+            // Without extinction what has been split off so far is all that dims the light.
+            let reflected = reflectance * select(walk.transmittance, passage.light_before, ABSORBS || SCATTERS);
+            if (reflectance > 0.0 && first < 0.0) {
+                first = entry.distance + distance(entry.x, passage.x_steepest) * volume.scale;
+                mirrored = Ending(LOOK_ALONG, passage.x_steepest, split.reflected, reflected);
+            } else {
+                radiance += reflected * far_radiance(split.reflected);
+            }
+            walk.transmittance *= 1.0 - reflectance;
+            if (EMITS || SCATTERS) { walk.emitted = mix(walk.emitted, passage.glow_before, reflectance); }
+            passage.light_before = walk.transmittance;
+            passage.glow_before = walk.emitted;
         }
-        walk.transmittance *= 1.0 - reflectance;
-        passage.light_before = walk.transmittance;
     }
     radiance += walk.emitted;
-    let d = normalize(select(walk.p0 + walk.q, walk.x - from_x, blocked));
+    let d = normalize(select(walk.p0 + walk.q, towards, blocked));
     // A little back where it leaves the box: a mesh may lie just there.
     let along = select(walk.x - contact() * d, from_x + contact() * d, blocked);
     var ending = Ending(LOOK_ALONG, along, d, walk.transmittance);
-    if (event == OPAQUE && !blocked) { ending = opaque_ending(walk.x, d, walk.transmittance); }
-    let touched = changed >= 0.0 || first >= 0.0 || event == OPAQUE;
+    let meets_voxel = event == OPAQUE && !blocked;
+    if (meets_voxel) { ending = opaque_ending(walk.x, d, walk.transmittance); }
+    let touched = first >= 0.0 || meets_voxel || has_changed(walk);
     if (touched) { radiance += end_ray(mirrored) + end_ray(ending); }
-    let depth = select(select(entry.distance, changed, changed >= 0.0), first, first >= 0.0);
-    return Seen(radiance, depth, touched);
+    // Smoke and hot air have no surface, an opaque voxel in them has.
+    var surface = select(-1.0, bent, volume.writes_depth != 0u);
+    if (meets_voxel && surface < 0.0) { surface = entry.distance + distance(entry.x, walk.x) * volume.scale; }
+    return Seen(radiance, select(surface, first, first >= 0.0), touched);
 }
 
 fn has_changed(walk: Walk) -> bool {

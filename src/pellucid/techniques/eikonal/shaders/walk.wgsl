@@ -7,13 +7,15 @@ const EXHAUSTED = 3u;   // ran out of steps
 const INTERFACE = 4u;   // stands at an interface; see Crossing
 const PAUSED = 5u;      // went far enough for the caller to look around
 
+const AMBIENT = 4u;     // region of what lies outside all regions
+
 struct Walk {
     x: vec3f,             // object metres
     p0: vec3f,            // optical momentum at the last new start ...
     q: vec3f,             // ... and what the field has added since: kept apart, so that 1e-4 radians survive in 32 bits
     optical_path: f32,    // world metres
-    transmittance: vec3f, // absorption since the walk began
-    emitted: vec3f,       // radiance picked up, seen from where the walk began
+    transmittance: vec3f, // what extinction has left since the walk began
+    emitted: vec3f,       // radiance picked up from emission and scattering, seen from where the walk began
     steps: u32,
     radius: f32,          // object metres around x in which nothing changes
     slope2: f32,          // |grad n|^2 met last, 1/m^2
