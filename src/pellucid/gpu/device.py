@@ -35,6 +35,7 @@ _TEXEL: dict[str, tuple[type, int]] = {
     "rgba16float": (np.float16, 4),
     "rg16float": (np.float16, 2),
     "r16float": (np.float16, 1),
+    "rgba32uint": (np.uint32, 4),
     "rgba8unorm": (np.uint8, 4),
     "rgba8unorm-srgb": (np.uint8, 4),
     "r8unorm": (np.uint8, 1),

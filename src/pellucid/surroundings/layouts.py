@@ -55,7 +55,9 @@ BvhTriangle = struct(
 TriangleAttributes = struct(
     [
         ("normal_0", "vec3f"),
+        ("chart_front", "u32"),  # of the atlas of caustics, counted from 1; 0 for none
         ("normal_1", "vec3f"),
+        ("chart_back", "u32"),
         ("normal_2", "vec3f"),
         ("uv_0", "vec2f"),
         ("uv_1", "vec2f"),
@@ -112,6 +114,11 @@ OutPatch = struct(
         ("flux", "vec3f"),  # radiant power of the bundle
     ]
 )
+
+# How many records wait, preceded by the workgroups that they fill: the arguments of an indirect dispatch.
+LookCount = struct([("groups_x", "u32"), ("groups_y", "u32"), ("groups_z", "u32"), ("count", "u32")])
+
+LandParams = struct([("units_per_flux", "f32"), ("width", "u32"), ("height", "u32")])
 
 QueryRay = struct([("origin", "vec3f"), ("t_max", "f32"), ("direction", "vec3f")])
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from pellucid.surroundings import environment, geometry, lights, maps
 from pellucid.surroundings.camera import write_camera
+from pellucid.surroundings.caustics import CausticMaps
 from pellucid.surroundings.layouts import MATERIAL_CASTS_SHADOW, FrameParams
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ class Surroundings:
     shadow_version : grows whenever the shadow maps are out of date.
     shadow_views : one depth view for each shadow map, in the order of their layers.
     shadow_lights : which light of the scene each shadow map belongs to.
+    caustics : light of refractive matter on the meshes.
     """
 
     def __init__(self, device: Device) -> None:
@@ -54,6 +56,7 @@ class Surroundings:
         self._layers: list[int] = []
         self._map_size = 1
         self._casters: list[list[bool]] = []
+        self.caustics = CausticMaps(device, self._resources)
 
     @property
     def bindings(self) -> dict[str, Any]:
@@ -68,7 +71,17 @@ class Surroundings:
     @property
     def nbytes(self) -> int:
         """Bytes of GPU memory held."""
-        return FrameParams.itemsize + sum(self._sizes.values())
+        return FrameParams.itemsize + sum(self._sizes.values()) + self.caustics.nbytes
+
+    @property
+    def geometry(self) -> geometry.Geometry:
+        """The triangles of all opaque meshes, in the order of the GPU's; the same object until one of them changes."""
+        return self._geometry
+
+    @property
+    def shading_constants(self) -> dict[str, float]:
+        """Override constants of every shader that shades meshes."""
+        return {"CAUSTICS": float(self.caustics.active)}
 
     @property
     def frame(self) -> np.ndarray:
@@ -125,6 +138,7 @@ class Surroundings:
         if not self._changed("geometry", [part for mesh in state for part in mesh]):
             return False
         self._geometry = geometry.gather(meshes)
+        self.caustics.drop()
         self._store("bvh_nodes", self._geometry.nodes)
         self._store("bvh_triangles", self._geometry.triangles)
         self._store("triangle_attributes", self._geometry.attributes)

@@ -56,9 +56,11 @@ class Query:
 
         rays = np.zeros(len(directions), QueryRay)
         rays["origin"], rays["direction"], rays["t_max"] = origins, directions, t_max
-        key = ("surroundings query", entry)
+        constants = self.surroundings.shading_constants
+        key = ("surroundings query", entry, *constants.values())
         if key not in self.device.cache:
-            self.device.cache[key] = ComputeKernel(self.device, "surroundings/shaders/query", entry=entry)
+            module = "surroundings/shaders/query"
+            self.device.cache[key] = ComputeKernel(self.device, module, entry=entry, constants=constants)
         found = self.device.buffer(QueryHit.itemsize * len(rays), label="query hits")
         own = {"query_rays": self.device.buffer(rays, label="query rays"), "query_hits": found}
         self.device.cache[key].run((-(-len(rays) // 64), 1, 1), {**own, **self.surroundings.bindings})

@@ -19,3 +19,7 @@
 @group(1) @binding(10) var shadow_maps: texture_depth_2d_array;
 @group(1) @binding(11) var shadow_sampler: sampler_comparison;
 @group(1) @binding(12) var env_glossy: texture_2d<f32>;
+@group(1) @binding(13) var caustic_map: texture_2d<f32>;
+@group(1) @binding(14) var blocked_map: texture_2d<f32>;
+@group(1) @binding(15) var caustic_sampler: sampler;
+@group(1) @binding(16) var caustic_charts: texture_2d<u32>;  // bits of floats, three texels a chart

@@ -11,8 +11,13 @@ struct SurfaceHit {
     barycentric: vec2f,  // weights of the second and third corner
 }
 
-// Nearest opaque surface with 0 < t < t_max
+// Nearest opaque surface with 0 < t < t_max that can be seen
 fn trace_opaque(origin_ws: vec3f, direction_ws: vec3f, t_max: f32) -> SurfaceHit {
+    return nearest_surface(origin_ws, direction_ws, t_max, true);
+}
+
+// Nearest opaque surface with 0 < t < t_max; `cull` lets a ray pass the back of what is single-sided, as light does not
+fn nearest_surface(origin_ws: vec3f, direction_ws: vec3f, t_max: f32, cull: bool) -> SurfaceHit {
     var hit = SurfaceHit(t_max, false, 0u, vec2f(0.0));
     if frame.triangle_count == 0u {
         return hit;
@@ -41,7 +46,7 @@ fn trace_opaque(origin_ws: vec3f, direction_ws: vec3f, t_max: f32) -> SurfaceHit
             }
         }
         for (var k = link; k < link + count; k++) {
-            let found = triangle_entry(k, origin_ws, direction_ws, true);
+            let found = triangle_entry(k, origin_ws, direction_ws, cull);
             if found.x > 0.0 && found.x < hit.t {
                 hit = SurfaceHit(found.x, true, k, found.yz);
             }

@@ -1,37 +1,62 @@
 // Radiance that an opaque surface sends to a viewer.
 //!import surroundings/shaders/camera
+//!import surroundings/shaders/caustics
 //!import surroundings/shaders/environment
 //!import surroundings/shaders/ggx
 //!import surroundings/shaders/lights
 //!import surroundings/shaders/surface
 
+override CAUSTICS: bool = false;  // whether light that has passed refractive matter was collected on the meshes
+
 const SHADE_MIN_ALPHA = 0.002;  // a lamp is a point: a perfect mirror would show it infinitely bright
 
 // Lambert under GGX. What the lobe reflects is taken from the diffuse share, so a white surface in a uniform
 // environment returns just that environment, at any roughness.
-fn shade_surface(p_ws: vec3f, n_ws: vec3f, uv: vec2f, material: u32, view_ws: vec3f) -> vec3f {
+fn shade_surface(surface: SurfacePoint, triangle: u32, view_ws: vec3f) -> vec3f {
+    let p_ws = surface.p_ws;
+    let n_ws = surface.n_ws;
+    let material = surface.material;
     let n_dot_v = clamp(dot(n_ws, view_ws), 1e-4, 1.0);
     let roughness = materials[material].roughness;
     let f0 = materials[material].specular;
     let alpha = max(roughness * roughness, SHADE_MIN_ALPHA);
     let specular = ggx_albedo(n_dot_v, roughness, f0);
-    let diffuse = (1.0 - specular) * base_color(material, uv, p_ws, n_dot_v) / GGX_PI;
+    let diffuse = (1.0 - specular) * base_color(material, surface.uv, p_ws, n_dot_v) / GGX_PI;
     var radiance = materials[material].emission + diffuse * environment_irradiance(n_ws);
     if specular > 0.0 {
         radiance += specular * environment_glossy(reflect(-view_ws, n_ws), alpha);
     }
+    var direct = DirectLight(vec3f(0.0), vec3f(0.0));
+    let n_face = face_normal(triangle, view_ws);
     for (var light = 0u; light < frame.light_count; light++) {
         let samples = light_sample_count(light);
         for (var k = 0u; k < samples; k++) {
             let sample = sample_light(light, k, p_ws, n_ws);
             let n_dot_l = dot(n_ws, sample.direction);
+            if CAUSTICS {
+                direct.irradiance += sample.irradiance * max(dot(n_face, sample.direction), 0.0);
+            }
             if n_dot_l > 0.0 && any(sample.irradiance > vec3f(0.0)) {
                 let brdf = diffuse + specular_lobe(n_ws, view_ws, sample.direction, n_dot_l, n_dot_v, alpha, f0);
                 radiance += brdf * sample.irradiance * n_dot_l;
+                if CAUSTICS {
+                    direct.radiance += brdf * sample.irradiance * n_dot_l;
+                }
             }
         }
     }
+    if CAUSTICS {
+        let received = received_at(triangle, p_ws, view_ws);
+        radiance += diffuse * received.caustic - direct.radiance * blocked_share(received, direct.irradiance);
+        radiance = max(radiance, vec3f(0.0));
+    }
     return radiance;
+}
+
+// What the lamps give to a point by themselves
+struct DirectLight {
+    radiance: vec3f,    // that it sends to the viewer
+    irradiance: vec3f,  // on the face, whose normal is not the interpolated one
 }
 
 // D V F [walter2007, eq. 20], 1/sr
@@ -61,5 +86,5 @@ fn base_color(material: u32, uv: vec2f, p_ws: vec3f, n_dot_v: f32) -> vec3f {
 fn shade_hit(hit: SurfaceHit, origin_ws: vec3f, direction_ws: vec3f) -> vec3f {
     let view_ws = -normalize(direction_ws);
     let surface = surface_at(hit.triangle, hit.barycentric, view_ws);
-    return shade_surface(surface.p_ws, surface.n_ws, surface.uv, surface.material, view_ws);
+    return shade_surface(surface, hit.triangle, view_ws);
 }

@@ -39,3 +39,10 @@ fn towards_viewer(n_smooth: vec3f, n_face: vec3f, view_ws: vec3f) -> vec3f {
     let facing = select(outward, -outward, dot(n_face, view_ws) < 0.0);
     return normalize(facing);
 }
+
+// Unit normal of the plane of a triangle, on the side that a direction points to
+fn face_normal(triangle: u32, side_ws: vec3f) -> vec3f {
+    let corner = bvh_triangles[triangle].corner_0;
+    let n = cross(bvh_triangles[triangle].corner_1 - corner, bvh_triangles[triangle].corner_2 - corner);
+    return normalize(select(n, -n, dot(n, side_ws) < 0.0));
+}

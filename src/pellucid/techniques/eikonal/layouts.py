@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pellucid.gpu.layout import struct
+from pellucid.surroundings.layouts import LookCount as LookCount
 
 MAX_REGIONS = 4
 
@@ -46,9 +47,6 @@ DrawParams = struct([("corner", "vec2u"), ("size", "vec2u"), ("weights", "mat3x3
 
 # A ray that has left the refractive matter and still has to find out what it sees.
 LookRay = struct([("origin", "vec3f"), ("slot", "u32"), ("direction", "vec3f"), ("kind", "u32")])
-
-# How many rays wait, preceded by the workgroups that they fill: the arguments of an indirect dispatch.
-LookCount = struct([("groups_x", "u32"), ("groups_y", "u32"), ("groups_z", "u32"), ("count", "u32")])
 
 TraceParams = struct([("count", "u32")])
 

@@ -185,7 +185,7 @@ class EikonalTechnique:
             march = self._march_kernel(body)
             march.run(blocks, {**shared, **volume}, encoder, timer, "eikonal march")
             waiting = (self._lists["look_queue"], 0)
-            self._look_kernel(body, surroundings.triangle_count > 0).run(
+            self._look_kernel(body, surroundings).run(
                 (0, 0, 0), shared, encoder, timer, "eikonal look", indirect=waiting
             )
             self._sum.run((-(-width * height // 64), 1, 1), shared, encoder, timer, "eikonal sum")
@@ -207,9 +207,9 @@ class EikonalTechnique:
         name = "view_sharp" if prepared.sharp else "view_smooth"
         return self._kernel(name, constants)
 
-    def _look_kernel(self, body: Body, has_meshes: bool) -> ComputeKernel:
-        by_screen = body.objects[0].surroundings == "screen"
-        return self._kernel("look", {"SCREEN_SPACE": float(by_screen), "HAS_MESHES": float(has_meshes)})
+    def _look_kernel(self, body: Body, surroundings: Surroundings) -> ComputeKernel:
+        own = {"SCREEN_SPACE": body.objects[0].surroundings == "screen", "HAS_MESHES": surroundings.triangle_count > 0}
+        return self._kernel("look", {**{k: float(v) for k, v in own.items()}, **surroundings.shading_constants})
 
     def _kernel(self, name: str, constants: dict[str, float]) -> ComputeKernel:
         key = (name, *constants.items())

@@ -40,14 +40,7 @@ class Opaque:
             depth=DEPTH_FORMAT,
             depth_compare="greater",
         )
-        self._shading = RenderPass(
-            device,
-            "techniques/opaque/shaders/shading",
-            targets=(COLOR_FORMAT,),
-            depth=DEPTH_FORMAT,
-            depth_compare="less",  # against depth 0: only where something was drawn
-            depth_write=False,
-        )
+        self._shadings: dict[tuple[float, ...], RenderPass] = {}
         self._triangles: Any = None
         self._shadow_lights: list[Any] = []
         self._drawn: tuple[Surroundings, int] | None = None
@@ -108,7 +101,7 @@ class Opaque:
             timer=timer,
             label="opaque visibility",
         )
-        self._shading.run(
+        self._shading(surroundings.shading_constants).run(
             encoder,
             color=[color],
             depth=depth,
@@ -117,6 +110,20 @@ class Opaque:
             timer=timer,
             label="opaque shading",
         )
+
+    def _shading(self, constants: dict[str, float]) -> RenderPass:
+        key = tuple(constants.values())
+        if key not in self._shadings:
+            self._shadings[key] = RenderPass(
+                self.device,
+                "techniques/opaque/shaders/shading",
+                targets=(COLOR_FORMAT,),
+                depth=DEPTH_FORMAT,
+                depth_compare="less",  # against depth 0: only where something was drawn
+                depth_write=False,
+                constants=constants,
+            )
+        return self._shadings[key]
 
     def _triangle_target(self, size: tuple[int, int]) -> Any:
         if self._triangles is None or (self._triangles.width, self._triangles.height) != size:

@@ -1,0 +1,66 @@
+// A bundle that is wide on the atlas, or torn by an edge, is cut into 8 x 8 parts: one workgroup a bundle, one
+// invocation a part. The middle of each part is traced; its light lies around there, or just there when torn.
+//!import surroundings/shaders/landing
+//!struct LookCount from surroundings.layouts
+
+const PARTS = 8u;
+const BLOCKS = 4u;  // at most, along each side of a part
+
+@group(0) @binding(3) var<storage, read> wide_queue: LookCount;
+@group(0) @binding(4) var<storage, read> wide_bundles: array<u32>;
+
+var<workgroup> corners: array<vec2f, 4>;
+var<workgroup> charts: array<u32, 4>;
+
+@compute @workgroup_size(64)
+fn main(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_index) local: u32,
+) {
+    clear_missed(local);
+    for (var k = group.x; k < wide_queue.count; k += groups.x) {
+        let index = wide_bundles[k];
+        if local < 4u {
+            let landed = land_ray(bundle_corner(outgoing[index], local), bundle_way(outgoing[index], local));
+            corners[local] = landed.at;
+            charts[local] = landed.chart;
+        }
+        workgroupBarrier();
+        land_part(index, local);
+        workgroupBarrier();
+    }
+    add_missed(local);
+}
+
+fn land_part(index: u32, part: u32) {
+    let bundle = outgoing[index];
+    let low = vec2f(f32(part % PARTS), f32(part / PARTS)) / f32(PARTS);
+    let middle = low + 0.5 / f32(PARTS);
+    let start = mix(mix(bundle.corner_0, bundle.corner_1, middle.x), mix(bundle.corner_2, bundle.corner_3, middle.x), middle.y);
+    let way = mix(mix(bundle.way_0, bundle.way_1, middle.x), mix(bundle.way_2, bundle.way_3, middle.x), middle.y);
+    let point = land_ray(start, normalize(way));
+    let units = bundle.flux * (landing.units_per_flux / f32(PARTS * PARTS));
+    let noise = bundle_noise(bundle, 1u + part);
+    let whole = charts[0] == charts[1] && charts[0] == charts[2] && charts[0] == charts[3] && charts[0] == point.chart;
+    let spread = Quad(corners[0], corners[1], corners[2], corners[3]);
+    let here = Quad(point.at, point.at, point.at, point.at);
+    if point.chart == 0u {
+        miss(units, bundle.kind, noise);
+        return;
+    }
+    var q = here;
+    if whole {
+        q = quad_part(spread, low, low + 1.0 / f32(PARTS));
+    }
+    let blocks = clamp(u32(ceil(quad_extent(q) / SPLAT_WINDOW)), 1u, BLOCKS);
+    for (var k = 0u; k < blocks * blocks; k++) {
+        let at = vec2f(f32(k % blocks), f32(k / blocks)) / f32(blocks);
+        let block = quad_part(q, at, at + 1.0 / f32(blocks));
+        let extent = quad_extent(block);
+        // A block that is still too wide is drawn smaller than it is: gaps show, and no light is lost.
+        let shrink = 0.5 - 0.5 * min(1.0, SPLAT_WINDOW / max(extent, 1e-9));
+        let kept = quad_part(block, vec2f(shrink), vec2f(1.0 - shrink));
+        splat(kept, point, units / f32(blocks * blocks), bundle.kind, fract(noise + 0.618034 * f32(k)));
+    }
+}

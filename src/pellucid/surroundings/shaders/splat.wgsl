@@ -1,0 +1,94 @@
+// Light laid down on the atlas of caustics in fixed point: sums of integers come out the same in any order.
+//!import surroundings/shaders/charts
+//!struct LandParams from surroundings.layouts
+//!struct OutPatch from surroundings.layouts
+
+const SPLAT_WINDOW = 2.0;   // texels across that a splat may be wide: with its tents it then covers 4 x 4 of them
+const SPLAT_POINTS = 2.0;   // a texel
+const SPLAT_LEAST = 0.02;   // texels, smallest width of a point
+// RGB of the caustic, RGB of the blocked light; after the last texel, those of the light that no chart has received
+const SUMS_PER_TEXEL = 6u;
+
+@group(0) @binding(0) var<uniform> landing: LandParams;
+@group(0) @binding(1) var<storage, read_write> flux_sums: array<atomic<u32>>;
+
+// A quadrangle on a chart; corners in texels, in the order (0, 0), (1, 0), (0, 1), (1, 1)
+struct Quad {
+    a: vec2f,
+    b: vec2f,
+    c: vec2f,
+    d: vec2f,
+}
+
+fn quad_point(q: Quad, st: vec2f) -> vec2f {
+    return mix(mix(q.a, q.b, st.x), mix(q.c, q.d, st.x), st.y);
+}
+
+fn quad_extent(q: Quad) -> f32 {
+    let size = max(max(q.a, q.b), max(q.c, q.d)) - min(min(q.a, q.b), min(q.c, q.d));
+    return max(size.x, size.y);
+}
+
+fn quad_part(q: Quad, low: vec2f, high: vec2f) -> Quad {
+    return Quad(
+        quad_point(q, low), quad_point(q, vec2f(high.x, low.y)),
+        quad_point(q, vec2f(low.x, high.y)), quad_point(q, high)
+    );
+}
+
+// Spread light evenly over a quadrangle no wider than SPLAT_WINDOW: by a lattice of boxes, each as large as its share of
+// the quadrangle and weighted with the tents of the texels around. Neighbouring bundles sum to a plateau.
+// `units` is the flux in units of the sums; `noise` in 0..1 decides how fractions are rounded, so that none is lost on
+// average.
+fn splat(q: Quad, point: ChartPoint, units: vec3f, kind: u32, noise: f32) {
+    let low = min(min(q.a, q.b), min(q.c, q.d));
+    let size = max(max(q.a, q.b), max(q.c, q.d)) - low;
+    let base = floor(low - 0.5);
+    let count = clamp(u32(ceil(SPLAT_POINTS * max(size.x, size.y))), 1u, u32(SPLAT_POINTS * SPLAT_WINDOW));
+    let box = max(size / f32(count), vec2f(SPLAT_LEAST));
+    var weights = array<vec4f, 4>();
+    for (var k = 0u; k < count * count; k++) {
+        let at = quad_point(q, (vec2f(f32(k % count), f32(k / count)) + 0.5) / f32(count)) - base - 0.5;
+        let x = tents(at.x, box.x);
+        let y = tents(at.y, box.y);
+        weights[0] += y.x * x;
+        weights[1] += y.y * x;
+        weights[2] += y.z * x;
+        weights[3] += y.w * x;
+    }
+    let share = units / f32(count * count);
+    var rest = vec3f(noise);
+    for (var k = 0u; k < 16u; k++) {
+        let value = weights[k / 4u][k % 4u] * share + rest;
+        let whole = floor(value);
+        rest = value - whole;
+        if any(whole > vec3f(0.0)) {
+            let texel = clamp(base + vec2f(f32(k % 4u), f32(k / 4u)), point.low, point.high - 1.0);
+            let place = SUMS_PER_TEXEL * (u32(texel.y) * landing.width + u32(texel.x)) + 3u * kind;
+            atomicAdd(&flux_sums[place], u32(whole.x));
+            atomicAdd(&flux_sums[place + 1u], u32(whole.y));
+            atomicAdd(&flux_sums[place + 2u], u32(whole.z));
+        }
+    }
+}
+
+// Means of the tents that stand at 0, 1, 2, 3 over a box
+fn tents(middle: f32, width: f32) -> vec4f {
+    let x = middle - vec4f(0.0, 1.0, 2.0, 3.0);
+    return (tent_integral(x + 0.5 * width) - tent_integral(x - 0.5 * width)) / width;
+}
+
+fn tent_integral(x: vec4f) -> vec4f {
+    let inside = clamp(x, vec4f(-1.0), vec4f(1.0));
+    return 0.5 + inside - 0.5 * inside * abs(inside);
+}
+
+// A number in 0..1 that depends on a bundle itself, not on its place in the list [jarzynski2020, pcg3d]
+fn bundle_noise(bundle: OutPatch, salt: u32) -> f32 {
+    var v = bitcast<vec3u>(bundle.corner_0) ^ (bitcast<vec3u>(bundle.way_3) * 2654435761u);
+    v = (v + vec3u(salt, 0u, bundle.kind)) * 1664525u + 1013904223u;
+    v.x += v.y * v.z; v.y += v.z * v.x; v.z += v.x * v.y;
+    v = v ^ (v >> vec3u(16u));
+    v.x += v.y * v.z;
+    return f32(v.x >> 8u) / 16777216.0;
+}
