@@ -70,6 +70,8 @@ class Volume:
     anisotropy : (Z, Y, X) mean cosine of what `scattering` scatters, in (-1, 1).
     emission : (Z, Y, X, 3) radiance gained per metre, >= 0; added as they are.
     opaque : (Z, Y, X, 4) linear RGB and coverage 0 to 1 of opaque matter.
+    reflection : (Z, Y, X, 4) what boundaries do to the light that they mirror: share that is kept, RGB, 0 to 1 (the
+        rest is absorbed), and roughness 0 to 1, for a `RefractiveVolume` with a BRDF.
     regions : bodies; the **first** whose distance is negative owns a point. With `delta_n` as well, that is the index
         inside the first body (a graded lens with a sharp surface), which then should be continued past the surface.
 
@@ -87,6 +89,7 @@ class Volume:
     anisotropy: Voxels | None = None
     emission: Voxels | None = None
     opaque: Voxels | None = None
+    reflection: Voxels | None = None
     regions: tuple[Region, ...] = ()
     shape: tuple[int, int, int] = field(init=False)
 
@@ -298,6 +301,7 @@ class Volume:
             anisotropy=anisotropy.astype(np.float32) if anisotropy.any() else None,
             emission=emission.astype(np.float32) if emission.any() else None,
             opaque=self.opaque,
+            reflection=self.reflection,
         )
 
     def __repr__(self) -> str:
@@ -318,6 +322,7 @@ _CHANNELS: dict[str, int | None] = {
     "anisotropy": None,
     "emission": 3,
     "opaque": 4,
+    "reflection": 4,
 }
 
 # Fields that add up with the constants of regions, in the order that `rasterised` names them in.
@@ -414,6 +419,8 @@ def _check_ranges(volume: Volume) -> None:
             raise SceneError(name, f"has {float(values.min()):g}", "use 0 or more")
     if volume.anisotropy is not None and float(np.abs(volume.anisotropy).max()) >= 1.0:
         raise SceneError("anisotropy", "has values outside (-1, 1)", "it is a mean cosine")
+    if volume.reflection is not None and not 0.0 <= volume.reflection.min() <= volume.reflection.max() <= 1.0:
+        raise SceneError("reflection", "has values outside 0 to 1", "give tint and roughness")
     if volume.opaque is not None:
         coverage = volume.opaque[..., 3]
         if float(coverage.min()) < 0.0 or float(coverage.max()) > 1.0:

@@ -13,6 +13,7 @@ import numpy as np
 
 from pellucid.errors import AssetError, SceneError
 from pellucid.scene import checks
+from pellucid.scene.brdf import GGX, TabulatedBRDF
 from pellucid.scene.placement import Origin, SceneObject, check_placement, store, translation_matrix
 from pellucid.scene.quality import Quality
 
@@ -43,6 +44,10 @@ class RefractiveVolume(SceneObject):
     surroundings : ``"rays"`` trace what a ray sees once it has left; ``"screen"`` looks it up in the
         picture behind, cheaper and blind to what the picture does not show.
     quality : how carefully rays are bent.
+    brdf : how boundaries spread what they mirror, seen from outside: None for mirrors, `GGX` or `TabulatedBRDF`.
+        Tint and roughness come from ``volume.reflection``, where there is such.
+    gloss : roughness 0 to 1 in which lamps are mirrored where a ray first meets the body; lamps have no size, so a
+        perfect mirror would never show them. 0 leaves them out. Boundaries smoother than this count as mirrors.
     center_m : where the middle of the box lies in the object's own coordinates. From a mesh it is the
         middle of the box around the mesh, so that ``position=(0, 0, 0)`` leaves the model where its file
         says: world = T(position) R S (x_volume + center_m), with x_mesh = x_volume + center_m.
@@ -64,6 +69,8 @@ class RefractiveVolume(SceneObject):
     gradient: str = "central"
     surroundings: str = "rays"
     quality: Quality = field(default_factory=Quality)
+    brdf: GGX | TabulatedBRDF | None = None
+    gloss: float = 0.08
     center_m: checks.Vector = (0.0, 0.0, 0.0)
     origin: Origin | None = field(default=None, repr=False)
 
@@ -243,6 +250,8 @@ def _checked(given: Mapping[str, Any]) -> dict[str, Any]:
         "gradient": lambda f, v: checks.choice(f, v, ("central", "sobel")),
         "surroundings": lambda f, v: checks.choice(f, v, ("rays", "screen")),
         "quality": _quality,
+        "brdf": _brdf,
+        "gloss": lambda f, v: checks.number(f, v, low=0.0, high=1.0),
         "center_m": checks.vector,
     }
     result = dict(given)
@@ -262,6 +271,12 @@ def _wavelengths(name: str, value: Any) -> int:
 def _quality(name: str, value: Any) -> Quality:
     if not isinstance(value, Quality):
         raise SceneError(name, f"cannot be {type(value).__name__!r}", "give Quality(...)")
+    return value
+
+
+def _brdf(name: str, value: Any) -> GGX | TabulatedBRDF | None:
+    if value is not None and not isinstance(value, GGX | TabulatedBRDF):
+        raise SceneError(name, f"cannot be {type(value).__name__!r}", "give GGX(...), TabulatedBRDF(...) or None")
     return value
 
 

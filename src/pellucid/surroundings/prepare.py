@@ -28,6 +28,7 @@ class Surroundings:
 
     Attributes
     ----------
+    light_count : lamps.
     triangle_count : triangles of all opaque meshes.
     mesh_bounds_ws : (lower, upper) corner in metres of each opaque mesh.
     shadow_version : grows whenever the shadow maps are out of date.
@@ -38,6 +39,7 @@ class Surroundings:
 
     def __init__(self, device: Device) -> None:
         self.device = device
+        self.light_count = 0
         self.triangle_count = 0
         self.mesh_bounds_ws: list[tuple[np.ndarray, np.ndarray]] = []
         self.shadow_version = 0
@@ -106,7 +108,8 @@ class Surroundings:
         except Exception:
             self._seen.clear()  # what was uploaded is now uncertain
             raise
-        self._frame["light_count"] = len(scene.lights)
+        self.light_count = len(scene.lights)
+        self._frame["light_count"] = self.light_count
         self.set_camera(scene.camera, size)
 
     def set_camera(
@@ -132,11 +135,6 @@ class Surroundings:
         self._frame["environment_pixel_lod"] = max(0.0, np.log2(max(spread / texel, 1e-9)))
         self._frame["sample_index"] = sample_index
         self.device.write(self._resources["frame"], self._frame.reshape(1))
-
-    @property
-    def sample_index(self) -> int:
-        """Number of the picture among those that are averaged, as `set_camera` was told."""
-        return int(self._frame["sample_index"])
 
     def _prepare_geometry(self, meshes: Sequence[Mesh]) -> bool:
         state = [_placement(m) for m in meshes]

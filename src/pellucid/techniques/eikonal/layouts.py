@@ -33,6 +33,9 @@ VolumeParams = struct(
         ("bounces", "u32"),
         ("region_count", "u32"),  # 0: the box itself is the surface
         ("writes_depth", "u32"),  # 0 for matter without a surface, such as hot air
+        ("coat", "vec4f"),  # tint and roughness of boundaries without reflection data
+        ("gloss", "f32"),  # roughness in which smooth boundaries show lamps; 0: not at all
+        ("brdf_layer", "u32"),  # which of the tabulated BRDFs is this volume's
         ("region_n", "vec4f"),
         ("region_absorption", ("vec4f", MAX_REGIONS)),  # 1/m of the world
         ("region_emission", ("vec4f", MAX_REGIONS)),  # radiance per world metre
@@ -45,8 +48,17 @@ VolumeParams = struct(
 # the first draw starts every pixel anew.
 DrawParams = struct([("corner", "vec2u"), ("size", "vec2u"), ("weights", "mat3x3f"), ("first", "u32")])
 
-# A ray that has left the refractive matter and still has to find out what it sees.
-LookRay = struct([("origin", "vec3f"), ("slot", "u32"), ("direction", "vec3f"), ("kind", "u32")])
+# A ray that has left the refractive matter and still has to find out what it sees. The last two are for lobes.
+LookRay = struct(
+    [
+        ("origin", "vec3f"),
+        ("slot", "u32"),
+        ("direction", "vec3f"),
+        ("kind", "u32"),
+        ("normal", "vec3f"),
+        ("roughness", "f32"),
+    ]
+)
 
 TraceParams = struct([("count", "u32")])
 

@@ -14,11 +14,12 @@ import numpy as np
 from pellucid.gpu import ComputeKernel, Device, RenderPass
 from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT, Targets
 from pellucid.techniques.eikonal.bodies import Body
+from pellucid.techniques.eikonal.brdf_tables import BrdfTables, spreading
 from pellucid.techniques.eikonal.layouts import DrawParams, LookCount, LookRay, VolumeParams
 from pellucid.techniques.eikonal.prepare import Prepared, prepare
 from pellucid.techniques.eikonal.proxies import Box, corners, tight_box, whole_box
 from pellucid.techniques.eikonal.resources import LOOKS_PER_PIXEL, VolumeTextures, constants_of, parameters, upload
-from pellucid.techniques.eikonal.wavelengths import at_sample, draws_of
+from pellucid.techniques.eikonal.wavelengths import draws_of
 
 if TYPE_CHECKING:
     from pellucid.scene import Camera, RefractiveVolume
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
 
 # A picture is drawn in bands of rows, so that the lists of waiting rays keep to 100 MB.
 BAND_PIXELS = 1 << 18
+# Rays that wait are counted apart from lobes that do.
+LOOK_QUEUES = 2
 
 Rectangle = tuple[int, int, int, int]
 
@@ -54,7 +57,8 @@ class EikonalTechnique:
         self.bodies: list[Body] = []
         self._drawn: dict[int, Body] = {}
         self._kernels: dict[Any, ComputeKernel] = {}
-        self._no_looks = device.buffer(np.array([(0, 1, 1, 0)], LookCount), "storage", "no looks")
+        self._no_looks = device.buffer(np.array([(0, 1, 1, 0)] * LOOK_QUEUES, LookCount), "storage", "no looks")
+        self._brdfs = BrdfTables(device)
         self._lists: dict[str, Any] = {}
         self._capacity = 0
         self._sum = self._kernel("sum", {})
@@ -75,6 +79,7 @@ class EikonalTechnique:
         """Make every volume resident, drop those that are gone, and write the parameters of each object."""
         wanted = {_key(item) for item in objects}
         self._loaded = {key: volume for key, volume in self._loaded.items() if key in wanted}
+        self._brdfs.prepare(objects)
         bodies = []
         for number, item in enumerate(objects):
             key = _key(item)
@@ -116,13 +121,11 @@ class EikonalTechnique:
         around = corners(body.box, 2.0 * body.prepared.voxel) @ body.world[:3, :3].T + body.world[:3, 3]
         low, high = around.min(axis=0), around.max(axis=0)
         body.meets_meshes = any((lo <= high).all() and (hi >= low).all() for lo, hi in surroundings.mesh_bounds_ws)
-        self._write_volume(body)
-
-    def _write_volume(self, body: Body) -> None:
         for channel, uniform in enumerate(body.uniforms):
             record = parameters(
                 body.prepared, body.textures, channel, body.quality, body.world, body.box, body.meets_meshes
             )
+            self._brdfs.write(record, body.objects[0])
             self.device.write(uniform, record.reshape(1))
 
     def draw(
@@ -136,10 +139,6 @@ class EikonalTechnique:
     ) -> None:
         """Encode the draws of one volume over what is in the targets."""
         body = self._drawn[id(item)]
-        shifted = at_sample(body.prepared, surroundings.sample_index)
-        if shifted is not body.prepared:
-            body.prepared = shifted
-            self._write_volume(body)
         covered = _screen_rectangle(body, camera, targets.size)
         if covered is None:
             return
@@ -163,7 +162,7 @@ class EikonalTechnique:
             "look_values": 16 * pixels * LOOKS_PER_PIXEL,
         }
         self._lists = {name: self.device.buffer(size, "storage", name) for name, size in sizes.items()}
-        self._lists["look_queue"] = self.device.buffer(LookCount.itemsize, "indirect", "look queue")
+        self._lists["look_queue"] = self.device.buffer(LOOK_QUEUES * LookCount.itemsize, "indirect", "look queue")
 
     def _draw_band(
         self,
@@ -186,15 +185,21 @@ class EikonalTechnique:
                 "screen_depth": targets.depth,
                 "draw": draws[number],
             }
-            encoder.copy_buffer_to_buffer(self._no_looks, 0, self._lists["look_queue"], 0, LookCount.itemsize)
+            encoder.copy_buffer_to_buffer(self._no_looks, 0, self._lists["look_queue"], 0, self._no_looks.size)
             volume = {**body.textures.channels[channel], **body.light, "volume": body.uniforms[channel]}
             blocks = (-(-width // 8), -(-height // 8), 1)
-            march = self._march_kernel(body)
+            lamps = body.objects[0].gloss > 0.0 and surroundings.light_count > 0
+            march = self._march_kernel(body, lamps)
             march.run(blocks, {**shared, **volume}, encoder, timer, "eikonal march")
             waiting = (self._lists["look_queue"], 0)
             self._look_kernel(body, surroundings).run(
                 (0, 0, 0), shared, encoder, timer, "eikonal look", indirect=waiting
             )
+            if lamps or spreading(body.objects[0]):
+                lobes = (self._lists["look_queue"], LookCount.itemsize)
+                self._lobe_kernel(body, surroundings).run(
+                    (0, 0, 0), {**shared, **self._brdfs.bindings}, encoder, timer, "eikonal lobe", indirect=lobes
+                )
             self._sum.run((-(-width * height // 64), 1, 1), shared, encoder, timer, "eikonal sum")
         self._composite.run(
             encoder,
@@ -206,9 +211,10 @@ class EikonalTechnique:
             label="eikonal composite",
         )
 
-    def _march_kernel(self, body: Body) -> ComputeKernel:
+    def _march_kernel(self, body: Body, lamps: bool) -> ComputeKernel:
         prepared = body.prepared
         constants = {**constants_of(prepared, body.quality), "MEETS_MESHES": float(body.meets_meshes)}
+        constants |= {"GLINTS": float(lamps), "ROUGH": float(spreading(body.objects[0]))}
         if prepared.sharp:
             constants["GRADED"] = float(prepared.graded)
         name = "view_sharp" if prepared.sharp else "view_smooth"
@@ -217,6 +223,10 @@ class EikonalTechnique:
     def _look_kernel(self, body: Body, surroundings: Surroundings) -> ComputeKernel:
         own = {"SCREEN_SPACE": body.objects[0].surroundings == "screen", "HAS_MESHES": surroundings.triangle_count > 0}
         return self._kernel("look", {**{k: float(v) for k, v in own.items()}, **surroundings.shading_constants})
+
+    def _lobe_kernel(self, body: Body, surroundings: Surroundings) -> ComputeKernel:
+        own = {"LOBES": spreading(body.objects[0]) > 0, "HAS_MESHES": surroundings.triangle_count > 0}
+        return self._kernel("look_lobe", {**{k: float(v) for k, v in own.items()}, **surroundings.shading_constants})
 
     def _kernel(self, name: str, constants: dict[str, float]) -> ComputeKernel:
         key = (name, *constants.items())

@@ -62,22 +62,17 @@ class Prepared:
     emission: np.ndarray | None  # (Z, Y, X, 3), radiance per metre
     scattering: np.ndarray | None  # (Z, Y, X, 4), RGB in 1/m, then the anisotropy
     opaque: np.ndarray | None  # (Z, Y, X, 4)
+    reflection: np.ndarray | None  # (Z, Y, X, 4)
     region_absorption: tuple[tuple[float, float, float], ...]
     region_emission: tuple[tuple[float, float, float], ...]
     region_scattering: tuple[tuple[float, float, float, float], ...]  # as `scattering`
     matter_extent_m: tuple[float, float, float]  # edges of the box that the fields fill: less than all where padded
     boundary_on_per_m: float
     boundary_off_per_m: float
-    regions: tuple[Region, ...] = ()  # of a sharp volume, the first owns a point
 
     @property
     def dispersive(self) -> bool:
         return len(self.channels) > 1
-
-    @property
-    def shares_fields(self) -> bool:
-        """Whether its wavelengths differ in nothing but the indices of regions."""
-        return len({(id(channel.force), id(channel.index)) for channel in self.channels}) == 1
 
     @property
     def voxel(self) -> float:
@@ -152,13 +147,13 @@ def _prepare_sharp(volume: Volume, gradient: str, method: str, lambdas_nm: Seque
         emission=volume.emission,
         scattering=scattering,
         opaque=volume.opaque,
+        reflection=volume.reflection,
         region_absorption=tuple(_rgb(r.medium.absorption_rgb_per_m) for r in regions),
         region_emission=tuple(_rgb(r.emission) for r in regions),
         region_scattering=tuple((*_rgb(r.scattering), r.anisotropy) for r in regions),
         matter_extent_m=matter_extent_m,
         boundary_on_per_m=np.inf,
         boundary_off_per_m=0.0,
-        regions=regions,
     )
 
 
@@ -196,6 +191,7 @@ def _prepare_smooth(
         emission=emission,
         scattering=scattering,
         opaque=opaque,
+        reflection=_padded(volume.reflection, pad, "edge"),
         region_absorption=(),
         region_emission=(),
         region_scattering=(),
@@ -223,7 +219,7 @@ def _closed_at_box(volume: Volume) -> Volume:
     for region in volume.regions:
         distance = np.pad(region.sdf, BOX_PAD, mode="edge")
         regions.append(replace(region, sdf=np.maximum(distance, outside_box).astype(np.float32)))
-    fields = ("delta_n", "absorption", "scattering", "anisotropy", "emission")
+    fields = ("delta_n", "absorption", "scattering", "anisotropy", "emission", "reflection")
     margin = np.array(volume.voxel_m) * 2 * BOX_PAD
     return volume.replace(
         extent_m=tuple(np.array(volume.extent_m) + margin),

@@ -59,6 +59,7 @@ def upload(device: Device, prepared: Prepared) -> VolumeTextures:
     shared["fluence_field"] = texture(None, 4, True, "fluence")
     shared["light_field"] = texture(None, 4, True, "direction of light")
     shared["opaque_field"] = texture(prepared.opaque, 4, True, "opaque")
+    shared["reflection_field"] = texture(prepared.reflection, 4, True, "reflection")
     made: dict[tuple[int, int], tuple[dict[str, Any], float, float]] = {}
     rows = []
     for channel in prepared.channels:
@@ -109,6 +110,7 @@ def constants_of(prepared: Prepared, quality: Quality) -> dict[str, float]:
         "EMITS": float(prepared.emission is not None or (prepared.graded and np.any(prepared.region_emission))),
         "SCATTERS": float(scatters(prepared)),
         "BLOCKS": float(prepared.opaque is not None),
+        "REFLECTS": float(prepared.reflection is not None),
     }
 
 
@@ -146,6 +148,7 @@ def parameters(
     out["boundary_on"] = min(prepared.boundary_on_per_m, FAR)
     out["boundary_off"] = prepared.boundary_off_per_m
     out["min_weight"] = quality.min_weight
+    out["coat"] = (1.0, 1.0, 1.0, 0.0)
     out["pause"] = PAUSE_TURN if meets_meshes and curved else FAR
     out["max_steps"] = quality.max_steps
     out["bounces"] = quality.bounces

@@ -9,6 +9,8 @@ override EMITS: bool = true;
 override SCATTERS: bool = true;    // anything in the volume scatters light
 override BLOCKS: bool = true;      // has opaque voxels
 
+override REFLECTS: bool = false;   // has reflection data
+
 override MEETS_MESHES: bool = false;   // opaque meshes reach into the box
 
 @group(0) @binding(0) var<uniform> volume: VolumeParams;
@@ -30,3 +32,5 @@ override MEETS_MESHES: bool = false;   // opaque meshes reach into the box
 @group(0) @binding(15) var fluence_field: texture_3d<f32>;
 // xyz: mean direction of that light, object space; its length says how parallel it is, 0 to 1
 @group(0) @binding(16) var light_field: texture_3d<f32>;
+// linear rgb: tint of mirrored light; a: roughness
+@group(0) @binding(17) var reflection_field: texture_3d<f32>;

@@ -41,3 +41,9 @@ fn opaque_at(x: vec3f) -> vec4f {
     if (!BLOCKS) { return vec4f(0.0); }
     return textureSampleLevel(opaque_field, volume_sampler, texture_position(x), 0.0);
 }
+
+// How a boundary mirrors: tint, roughness.
+fn reflection_at(x: vec3f) -> vec4f {
+    if (!REFLECTS) { return volume.coat; }
+    return textureSampleLevel(reflection_field, volume_sampler, texture_position(x), 0.0);
+}

@@ -9,13 +9,13 @@
 override HAS_MESHES: bool = true;
 override SCREEN_SPACE: bool = false;   // see nearby geometry in the picture drawn so far instead of by rays
 
-@group(0) @binding(0) var<storage, read> look_queue: LookCount;
+@group(0) @binding(0) var<storage, read> look_queue: array<LookCount, 2>;
 @group(0) @binding(1) var<storage, read> look_rays: array<LookRay>;
 @group(0) @binding(2) var<storage, read_write> look_values: array<vec4f>;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    if (id.x >= look_queue.count) { return; }
+    if (id.x >= look_queue[0].count) { return; }
     let ray = look_rays[id.x];
     var seen = vec3f(0.0);
     if (ray.kind == 1u) {

@@ -43,7 +43,7 @@ fn follow(ray: ptr<function, TraceRay>, approach: f32) {
         // The path that a picture follows first: refraction, or reflection where that is total.
         let split = split_at(crossing);
         interfaces += 1u;
-        if (!split.total) { walk.transmittance *= 1.0 - split.reflectance; }
+        walk.transmittance *= select(vec3f(1.0 - split.reflectance), reflection_at(walk.x).rgb, split.total);
         if (SHARP) {
             if (split.total) { redirect(&walk, split.reflected, crossing.n_i); } else { pass_through(&walk, crossing, split.refracted); }
         }

@@ -23,6 +23,11 @@ struct ViewRay {
     meets: bool,
 }
 
+override GLINTS: bool = false;     // lamps glint in smooth boundaries
+override ROUGH: u32 = 0u;          // boundaries are rough: BY_GGX, BY_TABLE, or 0 for mirrors
+
+const BY_GGX = 1u;
+const BY_TABLE = 2u;
 const UNSEEN = -1.0;
 
 // rgb: radiance; w: value for the depth buffer, or UNSEEN where the picture stays as it is
@@ -66,6 +71,27 @@ fn end_ray(ending: Ending) -> vec3f {
     if (all(ending.weight <= vec3f(0.0)) || look_later(ending.kind, to_world(ending.x), d, ending.weight)) { return vec3f(0.0); }
     if (ending.kind == LOOK_IRRADIANCE) { return ending.weight * environment_irradiance(d); }
     return ending.weight * environment_radiance(d);
+}
+
+// A boundary that light met from outside, where it mirrors more than a single ray: a rough one, or lamps in a smooth one.
+fn is_rough(coat: vec4f) -> bool {
+    return ROUGH == BY_TABLE || (ROUGH == BY_GGX && coat.a > volume.gloss);
+}
+
+// What the lobe about a mirrored ray sees, later. If there is no room for later, lamps are left out.
+fn end_lobe(x: vec3f, normal: vec3f, mirrored: vec3f, coat: vec4f, weight: vec3f) -> vec3f {
+    let rough = is_rough(coat);
+    if ((!GLINTS && !rough) || all(weight <= vec3f(0.0))) { return vec3f(0.0); }
+    var kind = LOOK_GLINT;
+    var roughness = volume.gloss;
+    if (rough) {
+        kind = select(LOOK_GLOSS, LOOK_TABLE, ROUGH == BY_TABLE);
+        roughness = select(coat.a, f32(volume.brdf_layer), ROUGH == BY_TABLE);
+    }
+    let d = direction_to_world(mirrored);
+    let waits = look_into_lobe_later(kind, to_world(x), d, direction_to_world(normal), roughness, weight);
+    if (waits || !rough) { return vec3f(0.0); }
+    return weight * environment_glossy(d, coat.a * coat.a);
 }
 
 // Where the budget ends: the environment, so that no energy is lost from a uniform one.

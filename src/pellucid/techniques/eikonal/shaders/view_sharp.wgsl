@@ -70,10 +70,18 @@ fn look_into(entry: ViewRay) -> Seen {
         radiance += end_ray(ending);
 
         if (goes_on && event == INTERFACE) {
-            generation += 1u;
             let split = split_at(crossing);
-            let refracts = split.reflectance < 0.5;
-            let back = Branch(walk.x, crossing.n_i * split.reflected, weight * split.reflectance, walk.region, walk.signs, generation);
+            let coat = reflection_at(walk.x);
+            let mirrored = weight * split.reflectance * coat.rgb;
+            // From outside a rough boundary spreads what it mirrors, and where the pixel first meets it, lamps glint.
+            let spreads = walk.region >= AMBIENT && is_rough(coat);
+            if (spreads || (GLINTS && generation == 0u && walk.region >= AMBIENT)) {
+                radiance += end_lobe(walk.x, crossing.normal, split.reflected, coat, mirrored);
+            }
+            generation += 1u;
+            let refracts = spreads || split.reflectance < 0.5;
+            let back = Branch(
+                walk.x, crossing.n_i * split.reflected, select(mirrored, vec3f(0.0), spreads), walk.region, walk.signs, generation);
             let through = Branch(
                 walk.x, crossing.n_t * split.refracted, weight * (1.0 - split.reflectance), crossing.region, crossing.signs, generation);
             // The heavier branch goes on; the lighter waits, or ends in the environment.

@@ -46,10 +46,13 @@ fn look_through(entry: ViewRay) -> Seen {
             let split = split_at(crossing);
             let reflectance = select(0.0, split.reflectance, event == INTERFACE && !blocked);
             // Without extinction what has been split off so far is all that dims the light.
-            let reflected = reflectance * select(walk.transmittance, passage.light_before, ABSORBS || SCATTERS);
+            let coat = reflection_at(passage.x_steepest);
+            let reflected = reflectance * coat.rgb * select(walk.transmittance, passage.light_before, ABSORBS || SCATTERS);
             if (reflectance > 0.0 && first < 0.0) {
                 first = entry.distance + distance(entry.x, passage.x_steepest) * volume.scale;
-                mirrored = Ending(LOOK_ALONG, passage.x_steepest, split.reflected, reflected);
+                let alone = select(reflected, vec3f(0.0), is_rough(coat));
+                mirrored = Ending(LOOK_ALONG, passage.x_steepest, split.reflected, alone);
+                radiance += end_lobe(passage.x_steepest, crossing.normal, split.reflected, coat, reflected);
             } else {
                 radiance += reflected * far_radiance(split.reflected);
             }
