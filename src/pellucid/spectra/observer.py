@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from importlib.resources import files
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,12 +22,17 @@ def _table() -> Numbers:
     return np.array([[float(v) for v in line.split(",")] for line in text.splitlines()[2:]])
 
 
-def _interpolated(lambda_nm: ArrayLike, columns: slice) -> Numbers:
+@cache
+def _curves() -> Any:
     from scipy.interpolate import PchipInterpolator
 
     table = _table()
-    curve = PchipInterpolator(table[:, 0], table[:, columns], extrapolate=False)
-    return np.nan_to_num(curve(np.asarray(lambda_nm, float)))
+    return PchipInterpolator(table[:, 0], table[:, 1:], extrapolate=False)
+
+
+def _at(lambda_nm: ArrayLike) -> Numbers:
+    """(..., 4) x-bar, y-bar, z-bar, D65."""
+    return np.nan_to_num(_curves()(np.asarray(lambda_nm, float)))
 
 
 def colour_matching(lambda_nm: ArrayLike) -> Numbers:
@@ -41,7 +46,7 @@ def colour_matching(lambda_nm: ArrayLike) -> Numbers:
     -------
     (..., 3), x-bar, y-bar and z-bar; the table of every 5 nm, interpolated by monotone cubics.
     """
-    return _interpolated(lambda_nm, slice(1, 4))
+    return _at(lambda_nm)[..., :3]
 
 
 def daylight(lambda_nm: ArrayLike) -> Numbers:
@@ -55,7 +60,7 @@ def daylight(lambda_nm: ArrayLike) -> Numbers:
     -------
     (...), 100 at 560 nm.
     """
-    return _interpolated(lambda_nm, slice(4, 5))[..., 0]
+    return _at(lambda_nm)[..., 3]
 
 
 def rgb_of_light(lambda_nm: ArrayLike) -> Numbers:

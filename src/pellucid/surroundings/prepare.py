@@ -136,6 +136,11 @@ class Surroundings:
         self._frame["sample_index"] = sample_index
         self.device.write(self._resources["frame"], self._frame.reshape(1))
 
+    @property
+    def sample_index(self) -> int:
+        """Number of the picture among those that are averaged, as `set_camera` was told."""
+        return int(self._frame["sample_index"])
+
     def _prepare_geometry(self, meshes: Sequence[Mesh]) -> bool:
         state = [_placement(m) for m in meshes]
         if not self._changed("geometry", [part for mesh in state for part in mesh]):

@@ -19,7 +19,7 @@ from pellucid.techniques.eikonal.layouts import DrawParams, LookCount, LookRay, 
 from pellucid.techniques.eikonal.prepare import Prepared, prepare
 from pellucid.techniques.eikonal.proxies import Box, corners, tight_box, whole_box
 from pellucid.techniques.eikonal.resources import LOOKS_PER_PIXEL, VolumeTextures, constants_of, parameters, upload
-from pellucid.techniques.eikonal.wavelengths import draws_of
+from pellucid.techniques.eikonal.wavelengths import at_sample, draws_of
 
 if TYPE_CHECKING:
     from pellucid.scene import Camera, RefractiveVolume
@@ -121,6 +121,9 @@ class EikonalTechnique:
         around = corners(body.box, 2.0 * body.prepared.voxel) @ body.world[:3, :3].T + body.world[:3, 3]
         low, high = around.min(axis=0), around.max(axis=0)
         body.meets_meshes = any((lo <= high).all() and (hi >= low).all() for lo, hi in surroundings.mesh_bounds_ws)
+        self._write_volume(body)
+
+    def _write_volume(self, body: Body) -> None:
         for channel, uniform in enumerate(body.uniforms):
             record = parameters(
                 body.prepared, body.textures, channel, body.quality, body.world, body.box, body.meets_meshes
@@ -139,6 +142,10 @@ class EikonalTechnique:
     ) -> None:
         """Encode the draws of one volume over what is in the targets."""
         body = self._drawn[id(item)]
+        shifted = at_sample(body.prepared, surroundings.sample_index)
+        if shifted is not body.prepared:
+            body.prepared = shifted
+            self._write_volume(body)
         covered = _screen_rectangle(body, camera, targets.size)
         if covered is None:
             return

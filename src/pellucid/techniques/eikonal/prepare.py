@@ -69,10 +69,16 @@ class Prepared:
     matter_extent_m: tuple[float, float, float]  # edges of the box that the fields fill: less than all where padded
     boundary_on_per_m: float
     boundary_off_per_m: float
+    regions: tuple[Region, ...] = ()  # of a sharp volume, the first owns a point
 
     @property
     def dispersive(self) -> bool:
         return len(self.channels) > 1
+
+    @property
+    def shares_fields(self) -> bool:
+        """Whether its wavelengths differ in nothing but the indices of regions."""
+        return len({(id(channel.force), id(channel.index)) for channel in self.channels}) == 1
 
     @property
     def voxel(self) -> float:
@@ -154,6 +160,7 @@ def _prepare_sharp(volume: Volume, gradient: str, method: str, lambdas_nm: Seque
         matter_extent_m=matter_extent_m,
         boundary_on_per_m=np.inf,
         boundary_off_per_m=0.0,
+        regions=regions,
     )
 
 

@@ -8,14 +8,12 @@ weights of all draws sum to the identity: matter without dispersion looks the sa
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from dataclasses import replace
 
 import numpy as np
 
-from pellucid.spectra import weights
-
-if TYPE_CHECKING:
-    from pellucid.techniques.eikonal.prepare import Prepared
+from pellucid.spectra import stratified, weights
+from pellucid.techniques.eikonal.prepare import Prepared, indices_at
 
 EVERY_COLOUR = np.eye(3)
 CHANNELS = tuple(np.diag(row) for row in np.eye(3))
@@ -30,12 +28,30 @@ def draws_of(prepared: Prepared) -> list[Draw]:
     One without dispersion, three for red, green and blue, or as many as the volume has wavelengths;
     colour out = weights @ colour found.
     """
-    lambdas_nm = [channel.lambda_nm for channel in prepared.channels]
-    if len(lambdas_nm) == 1:
-        return [(0, EVERY_COLOUR)]
-    if len(lambdas_nm) == len(CHANNELS):
-        return list(enumerate(CHANNELS))
-    return list(enumerate(weights(np.array(lambdas_nm))))
+    if is_spectral(prepared):
+        return list(enumerate(weights(np.array([channel.lambda_nm for channel in prepared.channels]))))
+    return list(enumerate(CHANNELS)) if prepared.dispersive else [(0, EVERY_COLOUR)]
+
+
+def is_spectral(prepared: Prepared) -> bool:
+    """Whether it has wavelengths of its own instead of red, green and blue."""
+    return len(prepared.channels) > len(CHANNELS)
+
+
+def at_sample(prepared: Prepared, sample: int) -> Prepared:
+    """A spectral volume with the wavelengths of another of the pictures that are averaged.
+
+    So few wavelengths become many, and bands of colour a spectrum. Where each wavelength has an index field of its own
+    they stay what they are.
+    """
+    if not is_spectral(prepared) or not prepared.shares_fields:
+        return prepared
+    lambdas_nm = stratified(len(prepared.channels), sample)
+    moved = (
+        replace(channel, region_n=indices_at(prepared.regions, float(lambda_nm)), lambda_nm=float(lambda_nm))
+        for channel, lambda_nm in zip(prepared.channels, lambdas_nm, strict=True)
+    )
+    return replace(prepared, channels=tuple(moved))
 
 
 def common_draws(volumes: Sequence[Prepared]) -> list[tuple[tuple[int, ...], np.ndarray]]:
