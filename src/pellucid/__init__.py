@@ -21,6 +21,7 @@ if TYPE_CHECKING:
         Camera,
         DirectionalLight,
         Environment,
+        LightQuality,
         Mesh,
         PointLight,
         Quality,
@@ -29,24 +30,28 @@ if TYPE_CHECKING:
         load_scene,
         save_scene,
     )
-    from pellucid.session import probe, render, trace
+    from pellucid.session import illuminate, probe, render, trace
+    from pellucid.techniques.eikonal.light import Irradiance
     from pellucid.techniques.eikonal.trace import Rays
 
 _HOME = {
     "AreaLight": "scene", "Camera": "scene", "DirectionalLight": "scene", "Environment": "scene", "Mesh": "scene",
+    "LightQuality": "scene",
     "PointLight": "scene", "Quality": "scene", "RefractiveVolume": "scene", "Scene": "scene",
     "load_scene": "scene", "save_scene": "scene",
     "Region": "fields.volume", "Volume": "fields.volume",
     "Frame": "frame", "Device": "gpu", "Renderer": "renderer", "Rays": "techniques.eikonal.trace",
+    "Irradiance": "techniques.eikonal.light", "illuminate": "session",
     "render": "session", "trace": "session", "probe": "session",
 }  # fmt: skip
 _MODULES = ("errors", "fields", "gpu", "io", "media", "optics", "scene")
 
 __version__ = "0.1.0"
 __all__ = [
-    "AreaLight", "AssetError", "Camera", "Device", "DirectionalLight", "Environment", "Frame", "Mesh",
+    "AreaLight", "AssetError", "Camera", "Device", "DirectionalLight", "Environment", "Frame", "Irradiance",
+    "LightQuality", "Mesh",
     "NoAdapterError", "PellucidError", "PointLight", "Quality", "Rays", "RefractiveVolume", "Region", "Renderer",
-    "Scene", "SceneError", "ShaderError", "Volume", "load_scene", "media", "optics", "probe", "render",
+    "Scene", "SceneError", "ShaderError", "Volume", "illuminate", "load_scene", "media", "optics", "probe", "render",
     "save_scene", "trace",
 ]  # fmt: skip
 

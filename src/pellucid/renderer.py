@@ -5,7 +5,7 @@ from __future__ import annotations
 import time as clock
 from collections.abc import Callable
 from operator import index as whole
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,6 +21,9 @@ from pellucid.techniques.environment.passes import Sky
 from pellucid.techniques.finish.accumulate import Accumulator
 from pellucid.techniques.finish.passes import Finish
 from pellucid.techniques.opaque.passes import Opaque
+
+if TYPE_CHECKING:
+    from pellucid.techniques.eikonal.light import Irradiance
 
 # Which technique draws which kind of object. Adding one takes a folder and a line here.
 TECHNIQUES: dict[type, Any] = {RefractiveVolume: EikonalTechnique}
@@ -86,6 +89,7 @@ class Renderer:
         self._prepare(scene, (width, height))
         self.device.wait()
         timings = {"prepare": 1e3 * (clock.perf_counter() - begun)}
+        self._illuminate(scene, timings)
         mean, depth = self._accumulate(scene, samples, timer, timings, progress)
         self._finish.prepare(scene.exposure, scene.tone_mapping, scene.glow)
         encoder = self.device.wgpu.create_command_encoder()
@@ -94,6 +98,20 @@ class Renderer:
         display = self.device.read_texture(self._display)[..., :3].copy()
         timings["total"] = 1e3 * (clock.perf_counter() - begun)
         return Frame(mean[..., :3].copy(), _metres(depth, scene.camera), display, timings)
+
+    def illuminate(
+        self, scene: Scene, volume: RefractiveVolume, progress: Callable[[float], None] | None = None
+    ) -> Irradiance:
+        """Light in one volume of a scene. See `pellucid.illuminate`."""
+        from pellucid.techniques.eikonal.light import illuminate
+
+        self._check(scene, (1, 1), 1)
+        if not any(item is volume for item in scene.objects):
+            raise SceneError("volume", "is not among the objects of the scene", "add it to Scene(objects=[...])")
+        self.surroundings.prepare(scene, (1, 1))
+        technique = EikonalTechnique(self.device)
+        technique.prepare([volume], self.surroundings)
+        return illuminate(technique, scene.lights, self.surroundings, progress)
 
     def _check(self, scene: Scene, size: tuple[int, int], samples: int) -> tuple[int, int]:
         if not isinstance(scene, Scene):
@@ -127,6 +145,14 @@ class Renderer:
                 self._techniques[kind] = TECHNIQUES[kind](self.device)
             if kind in self._techniques:
                 self._techniques[kind].prepare(items, self.surroundings)
+
+    def _illuminate(self, scene: Scene, timings: dict[str, float]) -> None:
+        """Light from the lamps' side, where a technique wants it; kept until what it depends on moves."""
+        begun = clock.perf_counter()
+        for technique in self._techniques.values():
+            technique.illuminate(scene.lights, self.surroundings)
+        self.device.wait()
+        timings["illuminate"] = 1e3 * (clock.perf_counter() - begun)
 
     def _accumulate(
         self,

@@ -6,6 +6,8 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import numpy as np
 
     from pellucid.fields.volume import Volume
@@ -13,6 +15,7 @@ if TYPE_CHECKING:
     from pellucid.gpu import Device
     from pellucid.renderer import Renderer
     from pellucid.scene import Quality, RefractiveVolume, Scene
+    from pellucid.techniques.eikonal.light import Irradiance
     from pellucid.techniques.eikonal.trace import Rays
 
 
@@ -45,6 +48,27 @@ def render(scene: Scene, size: tuple[int, int] = (800, 600), samples: int = 1, t
     SceneError : for a value out of range. NoAdapterError : when there is no device to render on.
     """
     return default_renderer().render(scene, size, time=time, samples=samples)
+
+
+def illuminate(scene: Scene, volume: RefractiveVolume, progress: Callable[[float], None] | None = None) -> Irradiance:
+    """Follow the light of a scene's lamps through one of its volumes, and say how much there is everywhere.
+
+    Meshes throw their shadows into the volume; other volumes do not act on its light.
+
+    Parameters
+    ----------
+    scene : its lamps and meshes. volume : one of its objects; `volume.light` says how carefully.
+    progress : called with the share that is done, 0 to 1.
+
+    Returns
+    -------
+    Irradiance : fluence, direction, flux_in, flux_absorbed, flux_out, flux_ended, patches, seconds.
+
+    Raises
+    ------
+    SceneError : when the volume is not in the scene, or a lamp stands in opaque matter.
+    """
+    return default_renderer().illuminate(scene, volume, progress)
 
 
 def trace(

@@ -3,6 +3,7 @@
 from pellucid.scene.camera import Camera
 from pellucid.scene.environment import Environment
 from pellucid.scene.files import load_scene, save_scene
+from pellucid.scene.light_quality import LightQuality
 from pellucid.scene.lights import AreaLight, DirectionalLight, PointLight
 from pellucid.scene.mesh import Mesh
 from pellucid.scene.placement import Light, SceneObject
@@ -16,6 +17,7 @@ __all__ = [
     "DirectionalLight",
     "Environment",
     "Light",
+    "LightQuality",
     "Mesh",
     "PointLight",
     "Quality",

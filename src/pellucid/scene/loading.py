@@ -15,6 +15,7 @@ from pellucid.media import Medium
 from pellucid.scene import schema
 from pellucid.scene.camera import Camera
 from pellucid.scene.environment import Environment
+from pellucid.scene.light_quality import LightQuality
 from pellucid.scene.lights import AreaLight, DirectionalLight, PointLight
 from pellucid.scene.mesh import Mesh
 from pellucid.scene.placement import Light, Origin, SceneObject
@@ -111,7 +112,9 @@ def _volume(part: Any, folder: Path) -> RefractiveVolume:
     look = {name: getattr(part, name) for name in schema.VolumeBase.model_fields if name in part.model_fields_set}
     del look["type"]
     if "quality" in look:
-        look["quality"] = _quality(part.quality)
+        look["quality"] = _valued(Quality, part.quality)
+    if "light" in look:
+        look["light"] = _valued(LightQuality, part.light)
     if "center_m" in part.model_fields_set:
         look["center_m"] = part.center_m
     if isinstance(part, schema.VolumeOfMesh):
@@ -123,9 +126,9 @@ def _volume(part: Any, folder: Path) -> RefractiveVolume:
     return _stored_volume(part, folder, look)
 
 
-def _quality(part: schema.QualityFile) -> Quality:
+def _valued(kind: type, part: schema.Model) -> Any:
     try:
-        return Quality(**part.given())
+        return kind(**part.given())
     except SceneError as error:
         raise SceneError(f"refractive_volume.{error.field}", error.reason, error.remedy) from error
 

@@ -14,6 +14,7 @@ import numpy as np
 from pellucid.errors import AssetError, SceneError
 from pellucid.scene import checks
 from pellucid.scene.brdf import GGX, TabulatedBRDF
+from pellucid.scene.light_quality import LightQuality
 from pellucid.scene.placement import Origin, SceneObject, check_placement, store, translation_matrix
 from pellucid.scene.quality import Quality
 
@@ -48,6 +49,7 @@ class RefractiveVolume(SceneObject):
         Tint and roughness come from ``volume.reflection``, where there is such.
     gloss : roughness 0 to 1 in which lamps are mirrored where a ray first meets the body; lamps have no size, so a
         perfect mirror would never show them. 0 leaves them out. Boundaries smoother than this count as mirrors.
+    light : how carefully light is followed through the volume.
     center_m : where the middle of the box lies in the object's own coordinates. From a mesh it is the
         middle of the box around the mesh, so that ``position=(0, 0, 0)`` leaves the model where its file
         says: world = T(position) R S (x_volume + center_m), with x_mesh = x_volume + center_m.
@@ -71,6 +73,7 @@ class RefractiveVolume(SceneObject):
     quality: Quality = field(default_factory=Quality)
     brdf: GGX | TabulatedBRDF | None = None
     gloss: float = 0.08
+    light: LightQuality = field(default_factory=LightQuality)
     center_m: checks.Vector = (0.0, 0.0, 0.0)
     origin: Origin | None = field(default=None, repr=False)
 
@@ -252,6 +255,7 @@ def _checked(given: Mapping[str, Any]) -> dict[str, Any]:
         "quality": _quality,
         "brdf": _brdf,
         "gloss": lambda f, v: checks.number(f, v, low=0.0, high=1.0),
+        "light": _light,
         "center_m": checks.vector,
     }
     result = dict(given)
@@ -277,6 +281,12 @@ def _quality(name: str, value: Any) -> Quality:
 def _brdf(name: str, value: Any) -> GGX | TabulatedBRDF | None:
     if value is not None and not isinstance(value, GGX | TabulatedBRDF):
         raise SceneError(name, f"cannot be {type(value).__name__!r}", "give GGX(...), TabulatedBRDF(...) or None")
+    return value
+
+
+def _light(name: str, value: Any) -> LightQuality:
+    if not isinstance(value, LightQuality):
+        raise SceneError(name, f"cannot be {type(value).__name__!r}", "give LightQuality(...)")
     return value
 
 

@@ -28,7 +28,7 @@ LOOKS: dict[type, tuple[str, ...]] = {
     ),
     RefractiveVolume: (
         *("position", "rotation", "scale", "boundary", "dispersion", "spectral", "smoothing_voxels"),
-        *("gradient", "surroundings", "quality"),
+        *("gradient", "surroundings", "quality", "light"),
     ),
 }
 

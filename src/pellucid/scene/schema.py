@@ -143,6 +143,16 @@ class QualityFile(Model):
     min_weight: Number = UNSET
 
 
+class LightQualityFile(Model):
+    front_voxels: Number = UNSET
+    split_voxels: Number = UNSET
+    bounces: StrictInt = UNSET
+    min_flux: Number = UNSET
+    method: StrictStr = UNSET
+    caustics: StrictBool = UNSET
+    caustic_texels: StrictInt = UNSET
+
+
 class ColouredMedium(Model):
     """A medium of the catalogue, or an index, with a colour of its own."""
 
@@ -163,6 +173,7 @@ class VolumeBase(Placed):
     gradient: StrictStr = UNSET
     surroundings: StrictStr = UNSET
     quality: QualityFile = UNSET
+    light: LightQualityFile = UNSET
 
 
 class VolumeOfMesh(VolumeBase):

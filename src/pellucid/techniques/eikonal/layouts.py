@@ -60,6 +60,62 @@ LookRay = struct(
     ]
 )
 
+# One light of the simulator and one batch of its front, object space.
+LightParams = struct(
+    [
+        ("position", "vec3f"),
+        ("kind", "u32"),  # 0 parallel, 1 from a point, 2 from a point of a face
+        ("direction", "vec3f"),  # of travel; or the normal of the face, unit
+        ("inside", "u32"),  # the lamp stands inside the box
+        ("power", "vec3f"),  # irradiance, or radiant intensity
+        ("casts", "u32"),  # meshes stop it before it arrives
+        ("box_half", "vec3f"),  # of the box that the front begins on, object metres
+        ("face_count", "u32"),
+        ("faces", ("vec4u", 6)),  # face (2 axis + side), tiles along both edges, number of the first tile
+        ("grid", "vec3u"),  # voxels of the fluence
+        ("batch_first", "u32"),
+        ("batch_count", "u32"),
+        ("capacity", "u32"),
+        ("out_capacity", "u32"),
+        ("bounces", "u32"),
+        ("most_layers", "u32"),  # of voxels that a straight piece can cross
+        ("patch_flux", "f32"),  # largest of the front
+        ("min_flux", "f32"),
+        ("divide_above", "f32"),  # patches with less than this share of `patch_flux` stay wide
+        ("split_width", "f32"),  # object metres
+        ("quanta_per_flux_m", "f32"),
+        ("fluence_per_quantum", "f32"),
+        ("total_quanta", "f32"),
+        ("intensity_quanta", "f32"),
+        ("intensity_direction", "f32"),
+    ]
+)
+
+# A patch of a wavefront: four corners, their optical momenta, and the flux between them.
+LightPatch = struct(
+    [
+        ("x_0", "vec3f"),
+        ("region", "u32"),
+        ("x_1", "vec3f"),
+        ("signs", "u32"),
+        ("x_2", "vec3f"),
+        ("level", "u32"),  # how often it has been divided
+        ("x_3", "vec3f"),
+        ("bounces", "u32"),
+        ("p_0", "vec3f"),
+        ("touched", "u32"),
+        ("p_1", "vec3f"),
+        ("is_ray", "u32"),  # all corners in one place
+        ("p_2", "vec3f"),
+        ("pad_2", "u32"),
+        ("p_3", "vec3f"),
+        ("pad_3", "u32"),
+        ("flux", "vec3f"),
+    ]
+)
+
+Generation = struct([("index", "u32")])
+
 TraceParams = struct([("count", "u32")])
 
 # One ray of `pl.trace`, object space. Results overwrite it.

@@ -5,7 +5,7 @@ A dispersive volume is looked through once for each of its wavelengths, whose we
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -16,9 +16,17 @@ from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT, Targets
 from pellucid.techniques.eikonal.bodies import Body
 from pellucid.techniques.eikonal.brdf_tables import BrdfTables, spreading
 from pellucid.techniques.eikonal.layouts import DrawParams, LookCount, LookRay, VolumeParams
+from pellucid.techniques.eikonal.light import LightSimulator, check_lights
 from pellucid.techniques.eikonal.prepare import Prepared, prepare
 from pellucid.techniques.eikonal.proxies import Box, corners, tight_box, whole_box
-from pellucid.techniques.eikonal.resources import LOOKS_PER_PIXEL, VolumeTextures, constants_of, parameters, upload
+from pellucid.techniques.eikonal.resources import (
+    LOOKS_PER_PIXEL,
+    VolumeTextures,
+    constants_of,
+    parameters,
+    scatters,
+    upload,
+)
 from pellucid.techniques.eikonal.wavelengths import at_sample, draws_of
 
 if TYPE_CHECKING:
@@ -61,6 +69,8 @@ class EikonalTechnique:
         self._brdfs = BrdfTables(device)
         self._lists: dict[str, Any] = {}
         self._capacity = 0
+        self._simulator: LightSimulator | None = None
+        self._lit: dict[int, Any] = {}
         self._sum = self._kernel("sum", {})
         self._composite = RenderPass(
             device,
@@ -94,6 +104,52 @@ class EikonalTechnique:
             bodies.append(body)
         self.bodies = bodies
         self._drawn = {id(item): body for body in bodies for item in body.objects}
+
+    def illuminate(self, lights: Sequence[Any], surroundings: Surroundings) -> None:
+        """Follow the light of all lamps through the bodies that show it; what has not changed is kept."""
+        lit: dict[int, Any] = {}
+        for number, body in enumerate(self.bodies):
+            if not lights or not scatters(body.prepared):
+                continue
+            state = _light_state(body, surroundings)
+            before = self._lit.get(number)
+            if before is not None and before[0] == state:
+                lit[number] = before
+            else:
+                check_lights(body.prepared, body.world, lights)
+                self.follow_light(body, lights, surroundings)
+                field = self.simulator.field(before[1] if before is not None else None)
+                lit[number] = (state, field, body.textures)  # kept, so that no id comes again
+            body.light = lit[number][1].bindings
+        self._lit = lit
+
+    @property
+    def simulator(self) -> LightSimulator:
+        """The light simulator, made when it is first needed."""
+        if self._simulator is None:
+            self._simulator = LightSimulator(self.device)
+        return self._simulator
+
+    def follow_light(
+        self,
+        body: Body,
+        lights: Sequence[Any],
+        surroundings: Surroundings,
+        progress: Callable[[float], None] | None = None,
+    ) -> None:
+        """Run the simulator on one body; the results stay in `simulator`."""
+        self.simulator.run(
+            body.prepared,
+            body.textures.channels,
+            body.uniforms,
+            body.world,
+            lights,
+            surroundings,
+            body.quality,
+            body.objects[0].light,
+            meets_meshes=body.meets_meshes,
+            progress=progress,
+        )
 
     def _load(self, item: RefractiveVolume) -> _Loaded:
         prepared = prepare(
@@ -277,3 +333,10 @@ def _screen_rectangle(body: Body, camera: Camera, size: tuple[int, int]) -> Rect
     if (high <= low).any():
         return None
     return int(low[0]), int(low[1]), int(high[0] - low[0]), int(high[1] - low[1])
+
+
+def _light_state(body: Body, surroundings: Surroundings) -> Any:
+    """What the light in a body depends on; lamps and meshes count their changes in the version of the shadows."""
+    item = body.objects[0]
+    matter = tuple(id(c) for c in body.textures.channels)
+    return (matter, body.world.tobytes(), item.light, item.quality, surroundings.shadow_version, body.meets_meshes)

@@ -1,0 +1,236 @@
+// Patches of a wavefront: four corner rays and the flux between them; how wide they are, how they divide, and where they go next.
+
+//!import techniques/eikonal/shaders/light_travel
+//!import techniques/eikonal/shaders/interfaces
+//!import techniques/eikonal/shaders/splitting
+
+const SMALLEST_TORN = 0.3;         // voxels: narrower patches whose corners part ways become single rays
+const TURNED_NORMALS = 0.9;        // cosine: normals that differ by more tear a patch
+const OUT_CAUSTIC = 0u;
+const OUT_BLOCKED = 1u;
+
+const UNTOUCHED = 0u;
+const TOUCHED = 1u;                // the light is no longer where it would be without the volume
+
+// The patch that this invocation follows: where its corners began, where they are, and what met them there.
+var<private> corner_x: array<vec3f, 4>;
+var<private> corner_p: array<vec3f, 4>;
+var<private> end_x: array<vec3f, 4>;
+var<private> end_p: array<vec3f, 4>;
+var<private> end_event: array<u32, 4>;
+var<private> end_crossing: array<Crossing, 4>;
+
+fn unpack(patch_in: LightPatch) {
+    corner_x = array<vec3f, 4>(patch_in.x_0, patch_in.x_1, patch_in.x_2, patch_in.x_3);
+    corner_p = array<vec3f, 4>(patch_in.p_0, patch_in.p_1, patch_in.p_2, patch_in.p_3);
+}
+
+fn middle(v: array<vec3f, 4>) -> vec3f {
+    return 0.25 * (v[0] + v[1] + v[2] + v[3]);
+}
+
+// Edges of the cut of a tube through a layer of voxels, the longer of each opposite two, object metres. Corners that are ahead of
+// others along the direction of travel are not apart; where the way is oblique to the layer the cut is wider than the tube.
+fn cut_edges(x: array<vec3f, 4>, d: vec3f) -> vec2f {
+    let steep = abs(d);
+    let x_main = steep.x >= max(steep.y, steep.z);
+    let along = select(select(vec3f(0.0, 0.0, 1.0), vec3f(0.0, 1.0, 0.0), steep.y >= steep.z), vec3f(1.0, 0.0, 0.0), x_main);
+    let slope = d / dot(d, along);
+    let a = x[1] - x[0];
+    let b = x[3] - x[2];
+    let c = x[2] - x[0];
+    let e = x[3] - x[1];
+    return vec2f(
+        max(length(a - dot(a, along) * slope), length(b - dot(b, along) * slope)),
+        max(length(c - dot(c, along) * slope), length(e - dot(e, along) * slope)));
+}
+
+// Edges of the cross-section: mean of the two opposite ones.
+fn edges_of(x: array<vec3f, 4>) -> mat2x3f {
+    return mat2x3f(0.5 * (x[1] - x[0] + x[3] - x[2]), 0.5 * (x[2] - x[0] + x[3] - x[1]));
+}
+
+// The tube from these corners to those. A single ray stands for a voxel's breadth of them.
+fn tube_between(x: array<vec3f, 4>, y: array<vec3f, 4>, flux: vec3f, is_ray: bool) -> Tube {
+    let weak = !worth_dividing(flux);
+    if (is_ray) {
+        let broad = mat2x3f(vec3f(volume.voxel), vec3f(volume.voxel));
+        return Tube(x[0], y[0], broad, broad, weak);
+    }
+    return Tube(middle(x), middle(y), edges_of(x), edges_of(y), weak);
+}
+
+// Area of the tube's cross-section, object metres squared.
+fn cross_section(x: array<vec3f, 4>, d: vec3f) -> f32 {
+    return 0.5 * abs(dot(cross(x[3] - x[0], x[2] - x[1]), d));
+}
+
+fn between_corners(v: array<vec3f, 4>, at: vec2f) -> vec3f {
+    return mix(mix(v[0], v[1], at.x), mix(v[2], v[3], at.x), at.y);
+}
+
+// Light of one patch relative to what it had when it entered, however often it was divided since.
+fn relative(flux: vec3f, level: u32) -> f32 {
+    return largest_of(abs(flux)) * exp2(f32(level)) / light.patch_flux;
+}
+
+fn largest_of(v: vec3f) -> f32 {
+    return max(v.x, max(v.y, v.z));
+}
+
+// Worth dividing: a patch that carries little is left wide, since its streaks cannot be seen.
+fn worth_dividing(flux: vec3f) -> bool {
+    return largest_of(abs(flux)) > light.divide_above * light.patch_flux;
+}
+
+fn emit(place: u32, x: array<vec3f, 4>, p: array<vec3f, 4>, flux: vec3f, from_patch: LightPatch) {
+    next_patches[place] = LightPatch(
+        x[0], from_patch.region, x[1], from_patch.signs, x[2], from_patch.level, x[3], from_patch.bounces,
+        p[0], from_patch.touched, p[1], from_patch.is_ray, p[2], 0u, p[3], 0u, flux);
+}
+
+// Two children of what lies between these corners, cut across the longer of its edges. False when there is no room for them.
+fn divide(x: array<vec3f, 4>, p: array<vec3f, 4>, edges: vec2f, flux: vec3f, from_patch: LightPatch) -> bool {
+    let place = reserve(generation.index + 2u, 2u, light.capacity);
+    if (place == NO_ROOM) { return false; }
+    var child = from_patch;
+    child.level += 1u;
+    let half = select(vec2f(1.0, 0.5), vec2f(0.5, 1.0), edges.x >= edges.y);
+    let n = vec4f(length(p[0]), length(p[1]), length(p[2]), length(p[3]));
+    for (var k = 0u; k < 2u; k++) {
+        let corner = f32(k) * (1.0 - half);
+        var xs = array<vec3f, 4>();
+        var ps = array<vec3f, 4>();
+        for (var c = 0u; c < 4u; c++) {
+            let at = corner + half * vec2f(f32(c & 1u), f32(c >> 1u));
+            xs[c] = between_corners(x, at);
+            // Directions are blended; the length of the momentum is the index, which is blended by itself.
+            let index = mix(mix(n[0], n[1], at.x), mix(n[2], n[3], at.x), at.y);
+            ps[c] = index * normalize(between_corners(p, at));
+        }
+        emit(place + k, xs, ps, 0.5 * flux, child);
+    }
+    return true;
+}
+
+// One ray for the whole tube: it is narrow, or weak, and its corners do not stay together.
+fn collapse(x: array<vec3f, 4>, p: array<vec3f, 4>, flux: vec3f, from_patch: LightPatch) -> bool {
+    let place = reserve(generation.index + 2u, 1u, light.capacity);
+    if (place == NO_ROOM) { return false; }
+    var ray = from_patch;
+    ray.is_ray = 1u;
+    let at = middle(x);
+    let way = 0.25 * (length(p[0]) + length(p[1]) + length(p[2]) + length(p[3])) * normalize(middle(p));
+    emit(place, array<vec3f, 4>(at, at, at, at), array<vec3f, 4>(way, way, way, way), flux, ray);
+    return true;
+}
+
+// Four single rays, a quarter of the flux each: corners that do not stay together go on alone.
+fn scatter_corners(x: array<vec3f, 4>, p: array<vec3f, 4>, flux: vec3f, from_patch: LightPatch) -> bool {
+    let rays = select(4u, 1u, from_patch.is_ray != 0u);
+    let place = reserve(generation.index + 2u, rays, light.capacity);
+    if (place == NO_ROOM) { return false; }
+    var ray = from_patch;
+    ray.level += select(2u, 0u, from_patch.is_ray != 0u);
+    ray.is_ray = 1u;
+    for (var k = 0u; k < rays; k++) {
+        emit(place + k, array<vec3f, 4>(x[k], x[k], x[k], x[k]), array<vec3f, 4>(p[k], p[k], p[k], p[k]), flux / f32(rays), ray);
+    }
+    return true;
+}
+
+// One patch goes on, or its light is given up: too weak, too many bounces, no room. Of weak patches a few go on with the flux of
+// all [arvo1990]; what this adds and takes is accounted for, so that sums stay exact.
+fn go_on(x: array<vec3f, 4>, p: array<vec3f, 4>, flux: vec3f, from_patch: LightPatch) {
+    let strength = relative(flux, from_patch.level);
+    if (strength <= 0.0) { return; }
+    var place = NO_ROOM;
+    let chance = clamp(strength / light.divide_above, 0.0, 1.0);
+    let drawn = random_pair(bitcast<vec2u>(x[0].xy) ^ vec2u(bitcast<u32>(x[0].z), generation.index)).x;
+    let strong = strength > light.min_flux && drawn <= chance && from_patch.bounces <= light.bounces;
+    if (strong) { place = reserve(generation.index + 2u, 1u, light.capacity); }
+    if (place == NO_ROOM) {
+        add_flux(TOTAL_ENDED, flux);
+    } else {
+        add_flux(TOTAL_LENT, flux / chance - flux);
+        emit(place, x, p, flux / chance, from_patch);
+    }
+}
+
+// Hand a bundle over to the surroundings, in world space.
+fn put_out(kind: u32, x: array<vec3f, 4>, p: array<vec3f, 4>, flux: vec3f) {
+    if (!OUTGOING) { return; }
+    let place = reserve(0u, 1u, light.out_capacity);
+    if (place == NO_ROOM) { return; }
+    var out = OutPatch();
+    out.kind = kind;
+    out.corner_0 = point_to_world(x[0]);
+    out.corner_1 = point_to_world(x[1]);
+    out.corner_2 = point_to_world(x[2]);
+    out.corner_3 = point_to_world(x[3]);
+    out.way_0 = way_to_world(p[0]);
+    out.way_1 = way_to_world(p[1]);
+    out.way_2 = way_to_world(p[2]);
+    out.way_3 = way_to_world(p[3]);
+    out.flux = flux;
+    outgoing[place] = out;
+}
+
+fn point_to_world(x: vec3f) -> vec3f {
+    return (volume.world_from_object * vec4f(x, 1.0)).xyz;
+}
+
+fn way_to_world(p: vec3f) -> vec3f {
+    return normalize((volume.world_from_object * vec4f(p, 0.0)).xyz);
+}
+
+// What all corners met alike: they stay together. Surfaces must agree in what lies behind them and, about, in their normal.
+fn is_torn(touches_surface: bool) -> bool {
+    let same_event = all(vec3u(end_event[1], end_event[2], end_event[3]) == vec3u(end_event[0]));
+    if (!same_event || !touches_surface) { return !same_event; }
+    var torn = false;
+    for (var k = 1u; k < 4u; k++) {
+        let facing = dot(end_crossing[k].normal, end_crossing[0].normal) > TURNED_NORMALS;
+        torn = torn || !facing || end_crossing[k].signs != end_crossing[0].signs;
+    }
+    return torn;
+}
+
+// All four corners stand at one surface: what is refracted and what is reflected [tevs2007, 3.2.5].
+// False when light is totally reflected at some corners only.
+fn split_front(flux: vec3f, from_patch: LightPatch) -> bool {
+    var through = array<vec3f, 4>();
+    var back = array<vec3f, 4>();
+    var reflectance = 0.0;
+    var totals = 0u;
+    for (var k = 0u; k < 4u; k++) {
+        let crossing = end_crossing[k];
+        let split = split_at(crossing);
+        through[k] = crossing.n_t * split.refracted;
+        back[k] = crossing.n_i * split.reflected;
+        reflectance += 0.25 * split.reflectance;
+        totals += u32(split.total);
+    }
+    if (totals != 0u && totals != 4u) { return false; }
+    if (from_patch.touched == UNTOUCHED) { put_out(OUT_BLOCKED, corner_x, corner_p, flux); }
+    var next = from_patch;
+    next.touched = TOUCHED;
+    next.bounces += 1u;
+    go_on(end_x, back, flux * reflectance, next);
+    next.region = end_crossing[0].region;
+    next.signs = end_crossing[0].signs;
+    go_on(end_x, through, flux * (1.0 - reflectance), next);
+    return true;
+}
+
+// Light leaves the box; if the volume has changed it, the surroundings are told.
+fn leave(flux: vec3f, touched: bool) {
+    add_flux(TOTAL_OUT, flux);
+    if (touched) { put_out(OUT_CAUSTIC, end_x, end_p, flux); }
+}
+
+// Of the matter that fills a region, 1/world metre.
+fn region_extinction(region: u32) -> vec3f {
+    let owner = min(region, AMBIENT - 1u);
+    return select(volume.region_absorption[owner].xyz + volume.region_scattering[owner].xyz, vec3f(0.0), region >= AMBIENT);
+}

@@ -1,0 +1,24 @@
+// From fixed-point sums to the fluence and the mean direction of light that the view looks up.
+
+//!struct LightParams from techniques.eikonal.layouts
+
+@group(0) @binding(0) var<uniform> light: LightParams;
+@group(0) @binding(1) var<storage, read> fluence: array<i32>;
+@group(0) @binding(2) var<storage, read> directions: array<i32>;
+@group(0) @binding(3) var fluence_image: texture_storage_3d<rgba16float, write>;
+@group(0) @binding(4) var direction_image: texture_storage_3d<rgba16float, write>;
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let size = light.grid;
+    let at = vec3u(id.x, id.y, id.z);
+    if (any(at >= size)) { return; }
+    let voxel = 3u * ((at.z * size.y + at.y) * size.x + at.x);
+    let sum = vec3f(f32(fluence[voxel]), f32(fluence[voxel + 1u]), f32(fluence[voxel + 2u]));
+    let way = vec3f(f32(directions[voxel]), f32(directions[voxel + 1u]), f32(directions[voxel + 2u]));
+    let lit = (sum.x + sum.y + sum.z) / 3.0;
+    let turn = way / max(lit, 1.0);
+    let bounded = turn / max(length(turn), 1.0);
+    textureStore(fluence_image, at, vec4f(max(sum, vec3f(0.0)) * light.fluence_per_quantum, 0.0));
+    textureStore(direction_image, at, vec4f(select(vec3f(0.0), bounded, lit > 0.5), 0.0));
+}

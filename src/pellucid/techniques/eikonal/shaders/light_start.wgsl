@@ -1,0 +1,90 @@
+// The front where it enters the box: one invocation a patch, on the faces that the lamp shines on [tevs2007, 4.2.2].
+
+//!import techniques/eikonal/shaders/light_patches
+//!import surroundings/shaders/raycast
+
+override HAS_MESHES: bool = true;
+override SMOOTH: bool = false;
+
+const PARALLEL = 0u;
+const FROM_POINT = 1u;
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if (id.x >= light.batch_count) { return; }
+    let tile = light.batch_first + id.x;
+    var face = 0u;
+    for (var k = 1u; k < light.face_count; k++) { face = select(face, k, tile >= light.faces[k].w); }
+    let shape = light.faces[face];
+    let local = tile - shape.w;
+    let corner = vec2f(f32(local % shape.y), f32(local / shape.y));
+    let tiles = vec2f(f32(shape.y), f32(shape.z));
+    for (var k = 0u; k < 4u; k++) {
+        begin_corner(k, shape.x, (corner + vec2f(f32(k & 1u), f32(k >> 1u))) / tiles);
+    }
+    let flux = light.power * (share_of_light() * lit_share());
+    add_flux(TOTAL_IN, flux);
+    if (largest_of(flux) <= 0.0) { return; }
+    var begun = LightPatch();
+    begun.signs = signs_of(distances_at(clamp(middle(corner_x), -light.box_half, light.box_half)));
+    begun.region = owner_of(begun.signs);
+    begun.touched = select(UNTOUCHED, TOUCHED, light.inside != 0u);
+    var n = 0.0;
+    if (SMOOTH) { n = index_at(middle(corner_x)); } else { n = region_index(begun.region, middle(corner_x)); }
+    for (var k = 0u; k < 4u; k++) { corner_p[k] = n * normalize(corner_p[k]); }
+    let place = reserve(1u, 1u, light.capacity);
+    if (place == NO_ROOM) { add_flux(TOTAL_ENDED, flux); return; }
+    emit(place, corner_x, corner_p, flux, begun);
+}
+
+// A corner on a face of the box; face = 2 axis + side. Around a lamp inside the box all rays begin at it.
+fn begin_corner(k: u32, face: u32, at: vec2f) {
+    let axis = face >> 1u;
+    let half = light.box_half;
+    let along = select(-1.0, 1.0, (face & 1u) != 0u);
+    // Not on the very edges: a ray along one must stay inside.
+    let across = 0.99999 * (2.0 * at - 1.0);
+    let unit = untwisted(vec3f(across, along), axis);
+    if (light.inside != 0u) {
+        corner_x[k] = light.position;
+        corner_p[k] = unit;
+        return;
+    }
+    corner_x[k] = unit * half;
+    corner_p[k] = select(corner_x[k] - light.position, light.direction, light.kind == PARALLEL);
+}
+
+// From (across, across, along) back to the axes of the object.
+fn untwisted(v: vec3f, axis: u32) -> vec3f {
+    return select(select(v.xyz, v.yzx, axis == 1u), v.zxy, axis == 0u);
+}
+
+// Projected area in world metres squared, or solid angle, of the patch; for a lamp with a face, times the cosine there.
+fn share_of_light() -> f32 {
+    if (light.kind == PARALLEL) { return cross_section(corner_x, light.direction) * volume.scale * volume.scale; }
+    let a = normalize(corner_p[0]);
+    let b = normalize(corner_p[1]);
+    let c = normalize(corner_p[2]);
+    let e = normalize(corner_p[3]);
+    let way = normalize(a + b + c + e);
+    let facing = select(max(dot(way, light.direction), 0.0), 1.0, light.kind == FROM_POINT);
+    return (solid_angle(a, b, c) + solid_angle(b, e, c)) * facing;
+}
+
+// Of a triangle of unit vectors [vanoosterom1983, eq. 8].
+fn solid_angle(a: vec3f, b: vec3f, c: vec3f) -> f32 {
+    return 2.0 * atan2(abs(dot(a, cross(b - a, c - a))), 1.0 + dot(a, b) + dot(b, c) + dot(c, a));
+}
+
+// How much of the patch the meshes leave in the light.
+fn lit_share() -> f32 {
+    if (!HAS_MESHES || light.casts == 0u || light.inside != 0u) { return 1.0; }
+    var lit = 0.0;
+    for (var k = 0u; k < 4u; k++) {
+        let x = mix(corner_x[k], middle(corner_x), 0.5);
+        let to_lamp = select(light.position - x, -light.direction, light.kind == PARALLEL);
+        let reach = select(length(to_lamp) * volume.scale, 1e30, light.kind == PARALLEL);
+        lit += 0.25 * f32(!occluded(point_to_world(x), way_to_world(to_lamp), reach));
+    }
+    return lit;
+}

@@ -1,0 +1,104 @@
+// One generation of light through matter that is homogeneous between sharp surfaces: corners go straight to what they meet next.
+
+//!import techniques/eikonal/shaders/light_patches
+//!import techniques/eikonal/shaders/light_meshes
+//!import techniques/eikonal/shaders/march_straight
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if (id.x >= atomicLoad(&counters.lists[generation.index + 1u].count)) { return; }
+    let tube = patches[id.x];
+    unpack(tube);
+    add_quanta(TOTAL_PATCHES, 1u);
+    for (var k = 0u; k < 4u; k++) {
+        // A single ray has four corners in one place.
+        if (k == 0u || tube.is_ray == 0u) {
+            find_end(k, tube);
+        } else {
+            end_x[k] = end_x[0];
+            end_p[k] = end_p[0];
+            end_event[k] = end_event[0];
+            end_crossing[k] = end_crossing[0];
+        }
+    }
+    let d = normalize(middle(corner_p));
+    let torn = is_torn(end_event[0] == INTERFACE);
+    let from_edges = cut_edges(corner_x, d);
+    let to_edges = cut_edges(end_x, d);
+    let from_width = max(from_edges.x, from_edges.y);
+    let to_width = max(to_edges.x, to_edges.y);
+    let narrow = max(from_width, to_width) <= SMALLEST_TORN * volume.voxel;
+    var flux = tube.flux;
+    if (torn) {
+        var parted = false;
+        if (narrow || !worth_dividing(flux)) {
+            parted = collapse(corner_x, corner_p, flux, tube);
+        } else {
+            parted = divide(corner_x, corner_p, from_edges, flux, tube);
+        }
+        if (!parted) { add_flux(TOTAL_ENDED, flux); }
+        return;
+    }
+    // Where on the way the tube gets too wide: widths of straight rays grow no faster than linearly between two of them.
+    let limit = light.split_width;
+    let widens = to_width > limit && worth_dividing(flux);
+    let part = select(1.0, clamp((limit - from_width) / max(to_width - from_width, 1e-12), 0.0, 1.0), widens);
+    var at = array<vec3f, 4>();
+    for (var k = 0u; k < 4u; k++) { at[k] = mix(corner_x[k], end_x[k], part); }
+    let before = flux;
+    travel(tube_between(corner_x, at, flux, tube.is_ray != 0u), &flux, region_extinction(tube.region));
+    add_flux(TOTAL_ABSORBED, before - flux);
+    var next = tube;
+    if (AMBIENT_MATTER && tube.touched == UNTOUCHED) {
+        put_out(OUT_BLOCKED, corner_x, corner_p, before);
+        next.touched = TOUCHED;
+    }
+    if (widens) {
+        if (!divide(at, corner_p, cut_edges(at, d), flux, next)) { add_flux(TOTAL_ENDED, flux); }
+        return;
+    }
+    switch end_event[0] {
+        case INTERFACE: {
+            if (!split_front(flux, next) && !collapse(end_x_before(), corner_p, flux, next)) { add_flux(TOTAL_ENDED, flux); }
+        }
+        case OPAQUE: { add_flux(TOTAL_ABSORBED, flux); }
+        case EXHAUSTED: { add_flux(TOTAL_ENDED, flux); }
+        default: { leave(flux, next.touched != UNTOUCHED); }
+    }
+}
+
+// Corners a little before the surface that they stand at, so that a single ray meets it by itself.
+fn end_x_before() -> array<vec3f, 4> {
+    var x = array<vec3f, 4>();
+    for (var k = 0u; k < 4u; k++) { x[k] = end_x[k] - 1e-3 * volume.voxel * normalize(corner_p[k]); }
+    return x;
+}
+
+// Follow corner k to a surface, an opaque voxel, a mesh, or out of the box.
+fn find_end(k: u32, tube: LightPatch) {
+    let start = corner_x[k];
+    let d = normalize(corner_p[k]);
+    let room = max(intersect_box(start, d, light.box_half).y, 0.0);
+    var signs = tube.signs;
+    var steps = 0u;
+    var t = 0.0;
+    var event = PAUSED;
+    while (event == PAUSED) {
+        let found = next_change(start, d, t, room, signs, &steps);
+        t = found.t;
+        event = select(LEFT, EXHAUSTED, steps >= volume.max_steps);
+        if (found.blocked) { event = OPAQUE; }
+        if (found.changed) {
+            let hit = surface_between(start + t * d, found.ahead * d, signs, found.distances);
+            t += hit.part * found.ahead;
+            let flipped = signs ^ (1u << hit.region);
+            event = select(INTERFACE, PAUSED, owner_of(flipped) == tube.region);
+            if (event == PAUSED) { signs = flipped; }
+            end_crossing[k] = crossing_at(start + t * d, corner_p[k], hit.normal, flipped);
+        }
+    }
+    let stop = mesh_before(start, d, t);
+    end_x[k] = start + select(t, stop, stop < t) * d;
+    end_p[k] = corner_p[k];
+    end_event[k] = select(event, MESH, stop < t);
+}
