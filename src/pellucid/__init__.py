@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from pellucid.gpu import Device
     from pellucid.renderer import Renderer
     from pellucid.scene import (
+        GGX,
         AreaLight,
         Camera,
         DirectionalLight,
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
         Quality,
         RefractiveVolume,
         Scene,
+        TabulatedBRDF,
         load_scene,
         save_scene,
     )
@@ -38,7 +40,7 @@ _HOME = {
     "AreaLight": "scene", "Camera": "scene", "DirectionalLight": "scene", "Environment": "scene", "Mesh": "scene",
     "LightQuality": "scene",
     "PointLight": "scene", "Quality": "scene", "RefractiveVolume": "scene", "Scene": "scene",
-    "load_scene": "scene", "save_scene": "scene",
+    "GGX": "scene", "TabulatedBRDF": "scene", "load_scene": "scene", "save_scene": "scene",
     "Region": "fields.volume", "Volume": "fields.volume",
     "Frame": "frame", "Device": "gpu", "Renderer": "renderer", "Rays": "techniques.eikonal.trace",
     "Irradiance": "techniques.eikonal.light", "illuminate": "session",
@@ -48,11 +50,38 @@ _MODULES = ("errors", "fields", "gpu", "io", "media", "optics", "scene")
 
 __version__ = "0.1.0"
 __all__ = [
-    "AreaLight", "AssetError", "Camera", "Device", "DirectionalLight", "Environment", "Frame", "Irradiance",
-    "LightQuality", "Mesh",
-    "NoAdapterError", "PellucidError", "PointLight", "Quality", "Rays", "RefractiveVolume", "Region", "Renderer",
-    "Scene", "SceneError", "ShaderError", "Volume", "illuminate", "load_scene", "media", "optics", "probe", "render",
-    "save_scene", "trace",
+    "GGX",
+    "AreaLight",
+    "AssetError",
+    "Camera",
+    "Device",
+    "DirectionalLight",
+    "Environment",
+    "Frame",
+    "Irradiance",
+    "LightQuality",
+    "Mesh",
+    "NoAdapterError",
+    "PellucidError",
+    "PointLight",
+    "Quality",
+    "Rays",
+    "RefractiveVolume",
+    "Region",
+    "Renderer",
+    "Scene",
+    "SceneError",
+    "ShaderError",
+    "TabulatedBRDF",
+    "Volume",
+    "illuminate",
+    "load_scene",
+    "media",
+    "optics",
+    "probe",
+    "render",
+    "save_scene",
+    "trace",
 ]  # fmt: skip
 
 

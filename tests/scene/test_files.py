@@ -16,6 +16,7 @@ from pellucid import media
 from pellucid.errors import AssetError, SceneError
 from pellucid.io.images import write_image
 from pellucid.scene import (
+    GGX,
     AreaLight,
     Camera,
     DirectionalLight,
@@ -25,6 +26,7 @@ from pellucid.scene import (
     Quality,
     RefractiveVolume,
     Scene,
+    TabulatedBRDF,
     load_scene,
     save_scene,
 )
@@ -87,9 +89,18 @@ def everything(inputs: Path) -> Scene:
             RefractiveVolume.from_mesh(
                 inputs / "box.ply", "N-BK7", 12, 1.33, boundary="smooth", quality=Quality(bounces=3, adaptive=False)
             ),
-            RefractiveVolume.from_mesh(inputs / "box.ply", ruby, 12, position=(1, 0, 0), dispersion=False),
-            RefractiveVolume.from_array(INDEX, (0.6, 0.5, 0.4), 1.1, emission=RNG.random((4, 5, 6, 3))),
-            RefractiveVolume.from_regions([(ball, 1.7), (ball, "diamond")], 8, 0.8, 1.2, center_m=(0, 1, 0)),
+            RefractiveVolume.from_mesh(inputs / "box.ply", ruby, 12, position=(1, 0, 0), dispersion=False, gloss=0.2),
+            RefractiveVolume.from_array(
+                INDEX,
+                (0.6, 0.5, 0.4),
+                1.1,
+                emission=RNG.random((4, 5, 6, 3)),
+                reflection=RNG.random((4, 5, 6, 4)),
+                brdf=TabulatedBRDF(0.3 * RNG.random((5, 4, 3))),
+            ),
+            RefractiveVolume.from_regions(
+                [(ball, 1.7), (ball, "diamond")], 8, 0.8, 1.2, center_m=(0, 1, 0), brdf=GGX(0.5)
+            ),
         ],
         exposure=1.5,
         tone_mapping="linear",

@@ -134,6 +134,7 @@ class Volume:
         anisotropy: npt.ArrayLike | None = None,
         emission: npt.ArrayLike | None = None,
         opaque: npt.ArrayLike | None = None,
+        reflection: npt.ArrayLike | None = None,
     ) -> Volume:
         """A volume from the refractive index of every voxel.
 
@@ -161,6 +162,7 @@ class Volume:
             "anisotropy": anisotropy,
             "emission": emission,
             "opaque": opaque,
+            "reflection": reflection,
         }
         return cls(extent_m, ambient, delta, **fields)  # type: ignore[arg-type]
 

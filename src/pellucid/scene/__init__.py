@@ -1,5 +1,6 @@
 """What a user describes: camera, lights, surroundings and things, with units and ranges; no GPU."""
 
+from pellucid.scene.brdf import GGX, TabulatedBRDF
 from pellucid.scene.camera import Camera
 from pellucid.scene.environment import Environment
 from pellucid.scene.files import load_scene, save_scene
@@ -12,6 +13,7 @@ from pellucid.scene.refractive_volume import RefractiveVolume
 from pellucid.scene.scene import Scene
 
 __all__ = [
+    "GGX",
     "AreaLight",
     "Camera",
     "DirectionalLight",
@@ -24,6 +26,7 @@ __all__ = [
     "RefractiveVolume",
     "Scene",
     "SceneObject",
+    "TabulatedBRDF",
     "load_scene",
     "save_scene",
 ]

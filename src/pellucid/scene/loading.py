@@ -13,6 +13,7 @@ from pellucid import media
 from pellucid.errors import AssetError, SceneError
 from pellucid.media import Medium
 from pellucid.scene import schema
+from pellucid.scene.brdf import GGX, TabulatedBRDF
 from pellucid.scene.camera import Camera
 from pellucid.scene.environment import Environment
 from pellucid.scene.light_quality import LightQuality
@@ -115,6 +116,8 @@ def _volume(part: Any, folder: Path) -> RefractiveVolume:
         look["quality"] = _valued(Quality, part.quality)
     if "light" in look:
         look["light"] = _valued(LightQuality, part.light)
+    if "brdf" in look:
+        look["brdf"] = _brdf(part.brdf, folder)
     if "center_m" in part.model_fields_set:
         look["center_m"] = part.center_m
     if isinstance(part, schema.VolumeOfMesh):
@@ -133,10 +136,23 @@ def _valued(kind: type, part: schema.Model) -> Any:
         raise SceneError(f"refractive_volume.{error.field}", error.reason, error.remedy) from error
 
 
+def _brdf(part: schema.BrdfFile, folder: Path) -> GGX | TabulatedBRDF:
+    from pellucid.io.volumes import read_volume
+
+    if "table" not in part.model_fields_set:
+        return GGX(**part.given())
+    if len(part.model_fields_set) > 1:
+        raise SceneError("brdf.table", "is given with roughness or tint", "choose one of them")
+    try:
+        return TabulatedBRDF(read_volume(folder / part.table))
+    except SceneError as error:
+        raise AssetError(folder / part.table, f"as a BRDF: {error.reason}", error.remedy) from error
+
+
 def _volume_of_array(part: schema.VolumeOfArray, folder: Path, look: dict[str, Any]) -> RefractiveVolume:
     from pellucid.io.volumes import read_volume
 
-    names = ("array", "absorption", "scattering", "anisotropy", "emission", "opaque")
+    names = ("array", "absorption", "scattering", "anisotropy", "emission", "opaque", "reflection")
     files = {name: folder / getattr(part, name) for name in names if name in part.model_fields_set}
     arrays: dict[str, Any] = {name: read_volume(path) for name, path in files.items()}
     settings = part.given(*names, *schema.VolumeBase.model_fields, "center_m")
@@ -162,7 +178,7 @@ def _stored_volume(part: schema.StoredVolume, folder: Path, look: dict[str, Any]
             raise AssetError(path, f"has no array 'region_{i}'", "it belongs to another scene file")
         words = region.given("medium")
         regions.append(Region(arrays.pop(f"region_{i}"), substance(region.medium), **words))
-    fields = ("delta_n", "absorption", "scattering", "anisotropy", "emission", "opaque")
+    fields = ("delta_n", "absorption", "scattering", "anisotropy", "emission", "opaque", "reflection")
     if set(arrays) - set(fields):
         raise AssetError(path, f"holds {sorted(set(arrays) - set(fields))}, not a volume", "save the scene again")
     if "ambient_n" in part.model_fields_set:

@@ -164,6 +164,7 @@ class RefractiveVolume(SceneObject):
         anisotropy: np.ndarray | None = None,
         emission: np.ndarray | None = None,
         opaque: np.ndarray | None = None,
+        reflection: np.ndarray | None = None,
         **placement: Any,
     ) -> Self:
         """Refractive index and more, given voxel by voxel; see ``Volume.from_array``.
@@ -174,7 +175,8 @@ class RefractiveVolume(SceneObject):
         extent_m : edges of the box along x, y, z, or its longest edge when voxels are cubes.
         ambient_n : index around it.
         absorption, scattering : (Z, Y, X, 3) 1/m. anisotropy : (Z, Y, X). emission : (Z, Y, X, 3)
-            radiance per metre. opaque : (Z, Y, X, 4) linear colour and coverage.
+            radiance per metre. opaque : (Z, Y, X, 4) linear colour and coverage. reflection : (Z, Y, X, 4) tint of
+            mirrored light and roughness.
         placement : any other field of the class.
 
         Raises
@@ -184,7 +186,7 @@ class RefractiveVolume(SceneObject):
         from pellucid.fields.volume import Volume
 
         options = _checked(placement)
-        more = (absorption, scattering, anisotropy, emission, opaque)
+        more = (absorption, scattering, anisotropy, emission, opaque, reflection)
         return cls(Volume.from_array(n, extent_m, ambient_n, *more), **options)
 
     @classmethod

@@ -14,6 +14,7 @@ import numpy as np
 from pellucid import media
 from pellucid.errors import SceneError
 from pellucid.media import Medium
+from pellucid.scene.brdf import GGX, TabulatedBRDF
 from pellucid.scene.environment import Environment
 from pellucid.scene.lights import AreaLight, DirectionalLight, PointLight
 from pellucid.scene.mesh import Mesh
@@ -28,7 +29,7 @@ LOOKS: dict[type, tuple[str, ...]] = {
     ),
     RefractiveVolume: (
         *("position", "rotation", "scale", "boundary", "dispersion", "spectral", "smoothing_voxels"),
-        *("gradient", "surroundings", "quality", "light"),
+        *("gradient", "surroundings", "quality", "light", "gloss"),
     ),
 }
 
@@ -140,8 +141,14 @@ def _object(thing: Any, label: str, index: int, beside: Sidecars) -> dict[str, A
         look = _stated(thing, LOOKS[RefractiveVolume])
         if thing.boundary == ("sharp" if thing.volume.regions else "smooth"):
             look.pop("boundary", None)  # what "auto" would choose
-        return {"type": "refractive_volume", **source, **look}
+        return {"type": "refractive_volume", **source, **look, **_brdf(thing.brdf, label, beside)}
     raise SceneError(f"objects[{index}]", f"a {type(thing).__name__} cannot be written to a scene file")
+
+
+def _brdf(brdf: GGX | TabulatedBRDF | None, label: str, beside: Sidecars) -> dict[str, Any]:
+    if isinstance(brdf, TabulatedBRDF):
+        return {"brdf": {"table": beside.arrays(f"{label}.brdf", {"values": brdf.values})}}
+    return {} if brdf is None else {"brdf": _plain(brdf)}
 
 
 def _mesh(mesh: Mesh, label: str, beside: Sidecars) -> dict[str, Any]:
@@ -166,11 +173,11 @@ def _volume(thing: RefractiveVolume, label: str, where: str, beside: Sidecars) -
         recipe = dict(thing.origin.recipe)
         substance = {"medium": describe_medium(recipe.pop("medium"), where)} if "medium" in recipe else {}
         source = _plain(recipe) | substance
-        files = ("mesh", "array", "absorption", "scattering", "anisotropy", "emission", "opaque")
+        files = ("mesh", "array", "absorption", "scattering", "anisotropy", "emission", "opaque", "reflection")
         source |= {name: beside.relative(source[name]) for name in files if name in source}
         return source if "mesh" in source else source | _stated(thing, ("center_m",))
     volume = thing.volume
-    names = ("delta_n", "absorption", "scattering", "anisotropy", "emission", "opaque")
+    names = ("delta_n", "absorption", "scattering", "anisotropy", "emission", "opaque", "reflection")
     arrays = {name: getattr(volume, name) for name in names if getattr(volume, name) is not None}
     regions = []
     for i, region in enumerate(volume.regions):

@@ -153,6 +153,14 @@ class LightQualityFile(Model):
     caustic_texels: StrictInt = UNSET
 
 
+class BrdfFile(Model):
+    """A table (an array of values), or else a rough boundary."""
+
+    table: StrictStr = UNSET
+    roughness: Number = UNSET
+    tint: Triple = UNSET
+
+
 class ColouredMedium(Model):
     """A medium of the catalogue, or an index, with a colour of its own."""
 
@@ -174,6 +182,8 @@ class VolumeBase(Placed):
     surroundings: StrictStr = UNSET
     quality: QualityFile = UNSET
     light: LightQualityFile = UNSET
+    brdf: BrdfFile = UNSET
+    gloss: Number = UNSET
 
 
 class VolumeOfMesh(VolumeBase):
@@ -193,6 +203,7 @@ class VolumeOfArray(VolumeBase):
     anisotropy: StrictStr = UNSET
     emission: StrictStr = UNSET
     opaque: StrictStr = UNSET
+    reflection: StrictStr = UNSET
     center_m: Triple = UNSET
 
 
