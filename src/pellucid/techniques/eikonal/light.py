@@ -286,7 +286,7 @@ def illuminate(
     begun = time.perf_counter()
     body = technique.bodies[0]
     check_lights(body.prepared, body.world, lights)
-    technique.follow_light(body, lights, surroundings, progress)
+    technique.follow_light(body, lights, surroundings, progress=progress)
     totals, patches = technique.simulator.totals()
     shape = body.objects[0].volume.shape
     fluence, direction = (_inner(field, shape) for field in technique.simulator.read())
@@ -304,6 +304,13 @@ def _inner(field: np.ndarray, shape: tuple[int, int, int]) -> np.ndarray:
 def has_ambient_matter(prepared: Prepared) -> bool:
     """Whether matter without a surface dims light."""
     return prepared.absorption is not None or prepared.scattering is not None
+
+
+def flux_bound(prepared: Prepared, world: np.ndarray, lights: Sequence[object], quality: LightQuality) -> float:
+    """Power that the lamps shed on the box of a volume, brightest channel, if nothing is in between."""
+    box = whole_box(prepared)[1]
+    fronts = (s for lamp in lights for s in sources_of(lamp, world, box, prepared.voxel, quality))
+    return sum(front.total_flux for front in fronts)
 
 
 def check_lights(prepared: Prepared, world: np.ndarray, lights: Sequence[object]) -> None:

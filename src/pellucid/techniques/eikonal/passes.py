@@ -13,10 +13,11 @@ import numpy as np
 
 from pellucid.gpu import ComputeKernel, Device, RenderPass
 from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT, Targets
+from pellucid.surroundings.charts import Reach
 from pellucid.techniques.eikonal.bodies import Body
 from pellucid.techniques.eikonal.brdf_tables import BrdfTables, spreading
 from pellucid.techniques.eikonal.layouts import DrawParams, LookCount, LookRay, VolumeParams
-from pellucid.techniques.eikonal.light import LightSimulator, check_lights
+from pellucid.techniques.eikonal.light import LightSimulator, check_lights, flux_bound
 from pellucid.techniques.eikonal.prepare import Prepared, prepare
 from pellucid.techniques.eikonal.proxies import Box, corners, tight_box, whole_box
 from pellucid.techniques.eikonal.resources import (
@@ -24,19 +25,23 @@ from pellucid.techniques.eikonal.resources import (
     VolumeTextures,
     constants_of,
     parameters,
+    scale_of,
     scatters,
     upload,
 )
 from pellucid.techniques.eikonal.wavelengths import at_sample, draws_of
 
 if TYPE_CHECKING:
-    from pellucid.scene import Camera, RefractiveVolume
+    from pellucid.scene import Camera, LightQuality, RefractiveVolume
     from pellucid.surroundings import Surroundings
 
 # A picture is drawn in bands of rows, so that the lists of waiting rays keep to 100 MB.
 BAND_PIXELS = 1 << 18
 # Rays that wait are counted apart from lobes that do.
 LOOK_QUEUES = 2
+
+# Meshes show the caustics and the shadow of a body within this many radii of its box.
+REACH_RADII = 5.0
 
 Rectangle = tuple[int, int, int, int]
 
@@ -71,6 +76,7 @@ class EikonalTechnique:
         self._capacity = 0
         self._simulator: LightSimulator | None = None
         self._lit: dict[int, Any] = {}
+        self._cast: list[Any] = []
         self._sum = self._kernel("sum", {})
         self._composite = RenderPass(
             device,
@@ -106,22 +112,58 @@ class EikonalTechnique:
         self._drawn = {id(item): body for body in bodies for item in body.objects}
 
     def illuminate(self, lights: Sequence[Any], surroundings: Surroundings) -> None:
-        """Follow the light of all lamps through the bodies that show it; what has not changed is kept."""
+        """Follow the light of all lamps through the bodies that show it; what has not changed is kept.
+
+        Bodies that scatter get the light in them, meshes the caustics and shadows of all bodies that give any.
+        """
+        states = [_light_state(body, surroundings) for body in self.bodies]
+        receiving = bool(lights) and surroundings.triangle_count > 0
+        casting = [body for body in self.bodies if receiving and _look_of(body).caustics]
+        cast_state = [state for body, state in zip(self.bodies, states, strict=True) if body in casting]
+        again = bool(casting) and not (surroundings.caustics.active and cast_state == self._cast)
+        if again:
+            again = self._begin_caustics(casting, lights, surroundings)
         lit: dict[int, Any] = {}
-        for number, body in enumerate(self.bodies):
-            if not lights or not scatters(body.prepared):
-                continue
-            state = _light_state(body, surroundings)
+        for number, (body, state) in enumerate(zip(self.bodies, states, strict=True)):
+            glows = bool(lights) and scatters(body.prepared)
             before = self._lit.get(number)
-            if before is not None and before[0] == state:
-                lit[number] = before
-            else:
+            fresh = before is not None and before[0] == state
+            casts = again and body in casting
+            if casts or (glows and not fresh):
                 check_lights(body.prepared, body.world, lights)
-                self.follow_light(body, lights, surroundings)
-                field = self.simulator.field(before[1] if before is not None else None)
-                lit[number] = (state, field, body.textures)  # kept, so that no id comes again
-            body.light = lit[number][1].bindings
-        self._lit = lit
+                self.follow_light(body, lights, surroundings, deposits=glows, casts=casts)
+            if glows and not fresh:
+                # The textures are kept with it, so that no id of theirs comes again.
+                lit[number] = (state, self.simulator.field(before[1] if before else None), body.textures)
+            elif glows:
+                lit[number] = before
+            body.light = lit[number][1].bindings if glows else {}
+        if again:
+            self._submit(surroundings.caustics.resolve)
+        if not casting and surroundings.caustics.active:
+            surroundings.caustics.drop()
+        self._lit, self._cast = lit, cast_state
+
+    def _begin_caustics(self, casting: Sequence[Body], lights: Sequence[Any], surroundings: Surroundings) -> bool:
+        """Unfold the meshes around the bodies, and clear their maps; False when no mesh is near."""
+        reaches, bound, texel_m = [], 0.0, np.inf
+        for body in casting:
+            radius = float(np.linalg.norm(whole_box(body.prepared)[1])) * scale_of(body.world)
+            reaches.append(Reach(tuple(body.world[:3, 3]), REACH_RADII * radius, radius))
+            longest = 2.0 * float(whole_box(body.prepared)[1].max()) * scale_of(body.world)
+            texel_m = min(texel_m, longest / _look_of(body).caustic_texels)
+            bound += flux_bound(body.prepared, body.world, lights, _look_of(body))
+        caustics = surroundings.caustics
+        caustics.prepare(surroundings.geometry, reaches, texel_m)
+        if caustics.charts is None or bound <= 0.0:
+            return False
+        self._submit(lambda encoder: caustics.begin(encoder, bound))
+        return True
+
+    def _submit(self, encode: Callable[[Any], None]) -> None:
+        encoder = self.device.wgpu.create_command_encoder()
+        encode(encoder)
+        self.device.wgpu.queue.submit([encoder.finish()])
 
     @property
     def simulator(self) -> LightSimulator:
@@ -135,9 +177,11 @@ class EikonalTechnique:
         body: Body,
         lights: Sequence[Any],
         surroundings: Surroundings,
+        deposits: bool = True,
+        casts: bool = False,
         progress: Callable[[float], None] | None = None,
     ) -> None:
-        """Run the simulator on one body; the results stay in `simulator`."""
+        """Run the simulator on one body; the results stay in `simulator`, and on the meshes when it `casts`."""
         self.simulator.run(
             body.prepared,
             body.textures.channels,
@@ -146,8 +190,10 @@ class EikonalTechnique:
             lights,
             surroundings,
             body.quality,
-            body.objects[0].light,
+            _look_of(body),
+            deposits=deposits,
             meets_meshes=body.meets_meshes,
+            land=surroundings.caustics.land if casts else None,
             progress=progress,
         )
 
@@ -335,8 +381,11 @@ def _screen_rectangle(body: Body, camera: Camera, size: tuple[int, int]) -> Rect
     return int(low[0]), int(low[1]), int(high[0] - low[0]), int(high[1] - low[1])
 
 
+def _look_of(body: Body) -> LightQuality:
+    return body.objects[0].light
+
+
 def _light_state(body: Body, surroundings: Surroundings) -> Any:
     """What the light in a body depends on; lamps and meshes count their changes in the version of the shadows."""
-    item = body.objects[0]
     matter = tuple(id(c) for c in body.textures.channels)
-    return (matter, body.world.tobytes(), item.light, item.quality, surroundings.shadow_version, body.meets_meshes)
+    return (matter, body.world.tobytes(), _look_of(body), body.quality, surroundings.shadow_version, body.meets_meshes)
