@@ -234,8 +234,14 @@ def test_moving_camera_light_index_or_object_compiles_nothing(device, ball, monk
         return pl.Scene(camera=rest.pop("camera", CAMERA), environment=around, objects=objects, **rest)
 
     renderer.render(scene(glass, floor, lights=[light]), SIZE)
-    textures = []
-    monkeypatch.setattr(type(device), "texture", lambda *a, **k: textures.append(a), raising=True)
+    volumes, make = [], type(device).texture
+
+    def texture(*args, **options):
+        if options.get("dimension") == "3d":
+            volumes.append(options.get("label"))
+        return make(*args, **options)
+
+    monkeypatch.setattr(type(device), "texture", texture, raising=True)
     for maker in ("create_shader_module", "create_compute_pipeline", "create_render_pipeline"):
         monkeypatch.setattr(device.wgpu, maker, lambda **k: pytest.fail("compiled again"))
     moved = [
@@ -246,7 +252,7 @@ def test_moving_camera_light_index_or_object_compiles_nothing(device, ball, monk
     ]
     for what in moved:
         renderer.render(what, SIZE)
-    assert not textures, "nothing but parameters is uploaded"
+    assert not volumes, "of volumes nothing but parameters is uploaded"
 
 
 def test_more_samples_smooth_the_outline_and_keep_the_mean(renderer, ball):
