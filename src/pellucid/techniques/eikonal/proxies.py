@@ -56,7 +56,8 @@ def _matter(prepared: Prepared) -> np.ndarray:
     else:
         indices = [np.abs(c.index) for c in prepared.channels if c.index is not None]
         held = np.any([index > NOTHING * index.max() for index in indices], axis=0)
-    for field in (prepared.absorption, prepared.emission, prepared.opaque):
+    scattering = None if prepared.scattering is None else prepared.scattering[..., :3]
+    for field in (prepared.absorption, prepared.emission, scattering, prepared.opaque):
         if field is not None:
             held = held | (field > 0.0).any(axis=-1)
     return np.asarray(held)
