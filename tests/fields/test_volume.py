@@ -88,6 +88,19 @@ def test_rasterised_keeps_emission():
     assert volume.absorption is None
 
 
+def test_rasterised_adds_fields_to_bodies_and_weights_the_anisotropy_by_scattering():
+    sdf = Volume.from_sdf(ball(0.4), 1.2, 16, 1.0).regions[0].sdf
+    body = Region(sdf, media.constant(1.2, (1.0, 2.0, 3.0)), scattering=(3, 3, 3), anisotropy=0.8)
+    around = np.ones((16, 16, 16, 3))
+    fields = {"absorption": around, "scattering": around, "emission": around, "anisotropy": np.full((16,) * 3, -0.4)}
+    volume = Volume((1, 1, 1), regions=(body,), **fields).rasterised()
+    np.testing.assert_allclose(volume.absorption[8, 8, 8], [2, 3, 4])
+    np.testing.assert_allclose(volume.scattering[8, 8, 8], 4.0)
+    np.testing.assert_allclose(volume.emission[[8, 0], 8, [8, 0]], 1.0)
+    np.testing.assert_allclose(volume.anisotropy[[8, 0], [8, 0], [8, 0]], [(3 * 0.8 - 0.4) / 4, -0.4], rtol=1e-6)
+    np.testing.assert_allclose(volume.scattering[0, 0, 0], 1.0)
+
+
 def test_mesh_is_placed_about_its_centre():
     mesh = trimesh.creation.box(extents=(0.4, 0.2, 0.1)).apply_translation([1.0, 2.0, 3.0])
     volume, centre = Volume.from_mesh(mesh.vertices, mesh.faces, 1.5, 26)
@@ -145,6 +158,24 @@ def test_bad_fields_are_refused_by_name(arguments, field):
 def test_bad_resolution_is_refused_before_memory_is_taken(resolution):
     with pytest.raises(SceneError, match="resolution"):
         Volume.from_function(lambda x, y, z: 1.0 + 0 * x, resolution, 1.0)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"scattering": (1, -1, 1)},
+        {"scattering": 1.0},
+        {"scattering": "thick"},
+        {"anisotropy": 1.0},
+        {"anisotropy": float("nan")},
+        {"anisotropy": True},
+        {"emission": (0, np.inf, 0)},
+    ],
+)
+def test_bad_constants_of_a_region_are_refused_by_name(wrong):
+    with pytest.raises(SceneError) as caught:
+        Region(np.ones((4, 4, 4)), 1.5, **wrong)
+    assert caught.value.field == next(iter(wrong))
 
 
 def test_bad_regions_are_refused():

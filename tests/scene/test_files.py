@@ -14,6 +14,7 @@ import pytest
 
 from pellucid import media
 from pellucid.errors import AssetError, SceneError
+from pellucid.fields.volume import Region, Volume
 from pellucid.io.images import write_image
 from pellucid.scene import (
     GGX,
@@ -70,6 +71,8 @@ def inputs(tmp_path: Path) -> Path:
 
 
 def everything(inputs: Path) -> Scene:
+    body = Region(RNG.normal(size=(4, 5, 6)), 1.5, "opal", (1, 0, 0), scattering=(1, 2, 3), anisotropy=-0.25)
+    murky = Volume((0.6, 0.5, 0.4), regions=(body,), scattering=RNG.random((4, 5, 6, 3)), anisotropy=0.5 * INDEX - 0.5)
     ruby = media.get("water").with_absorption((1.0, 20.0, 30.0), name="wine")
     return Scene(
         Camera((1, 2, 3), up=(0, 0, 1), fov_deg=33.3, orthographic_height_m=2.0),
@@ -101,6 +104,7 @@ def everything(inputs: Path) -> Scene:
             RefractiveVolume.from_regions(
                 [(ball, 1.7), (ball, "diamond")], 8, 0.8, 1.2, center_m=(0, 1, 0), brdf=GGX(0.5)
             ),
+            RefractiveVolume.from_volume(murky),
         ],
         exposure=1.5,
         tone_mapping="linear",
