@@ -186,14 +186,19 @@ class Renderer:
         return mean, depth
 
     def _draw(self, encoder: Any, scene: Scene, targets: Targets, timer: PassTimer) -> None:
-        """Illuminate, opaque, refractive (far to near): everything up to the linear picture."""
+        """Illuminate, opaque, refractive: everything up to the linear picture.
+
+        Each technique draws all of its objects; they follow one another far to near, by the nearest object of each.
+        """
         around = self.surroundings
         self._opaque.illuminate(encoder, around, timer)
         self._opaque.draw(encoder, targets.color_view, targets.depth_view, around, timer)
         self._sky.draw(encoder, targets.color_view, targets.depth_view, around, timer)
-        refractive = [o for o in scene.objects if type(o) in TECHNIQUES]
-        for item in sorted(refractive, key=lambda o: -_distance(o, scene.camera)):
-            self._techniques[type(item)].draw(encoder, item, targets, scene.camera, around, timer)
+        nearest: dict[type, float] = {}
+        for item in (o for o in scene.objects if type(o) in TECHNIQUES):
+            nearest[type(item)] = min(nearest.get(type(item), np.inf), _distance(item, scene.camera))
+        for kind in sorted(nearest, key=nearest.__getitem__, reverse=True):
+            self._techniques[kind].draw(encoder, targets, scene.camera, around, timer)
 
     def _submit(self, encoder: Any, timer: PassTimer, timings: dict[str, float]) -> None:
         self.device.wgpu.queue.submit([encoder.finish()])

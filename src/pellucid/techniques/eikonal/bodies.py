@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from pellucid.techniques.eikonal.resources import VolumeTextures
 
 
-@dataclass
+@dataclass(eq=False)
 class Body:
     """One box of matter on the device.
 
@@ -27,7 +27,6 @@ class Body:
     box : its proxy, object metres.
     quality : how carefully rays are bent.
     meets_meshes : opaque meshes reach into its box.
-    draws : for each band of the picture one DrawParams buffer for each wavelength.
     light : textures "fluence_field" and "light_field" over the prepared box, once light has been followed through it.
     """
 
@@ -39,5 +38,4 @@ class Body:
     box: Box
     quality: Quality
     meets_meshes: bool = False
-    draws: list[list[Any]] = field(default_factory=list)
     light: dict[str, Any] = field(default_factory=dict)

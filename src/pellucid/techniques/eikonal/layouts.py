@@ -41,6 +41,8 @@ VolumeParams = struct(
         ("region_emission", ("vec4f", MAX_REGIONS)),  # radiance per world metre
         ("region_scattering", ("vec4f", MAX_REGIONS)),  # rgb in 1/m of the world, anisotropy
         ("matter_half", "vec3f"),  # of the box that the fields of matter fill, object metres
+        ("body", "u32"),  # its number among the bodies that rays go between
+        ("body_count", "u32"),
     ]
 )
 
@@ -48,13 +50,14 @@ VolumeParams = struct(
 # the first draw starts every pixel anew.
 DrawParams = struct([("corner", "vec2u"), ("size", "vec2u"), ("weights", "mat3x3f"), ("first", "u32")])
 
-# A ray that has left the refractive matter and still has to find out what it sees. The last two are for lobes.
+# A ray that has left the refractive matter and still has to find out what it sees. body: which one it has left,
+# or enters next (shaders/looks.wgsl); normal and roughness are for lobes.
 LookRay = struct(
     [
         ("origin", "vec3f"),
-        ("slot", "u32"),
-        ("direction", "vec3f"),
         ("kind", "u32"),
+        ("direction", "vec3f"),
+        ("body", "u32"),
         ("normal", "vec3f"),
         ("roughness", "f32"),
     ]
@@ -115,6 +118,9 @@ LightPatch = struct(
 )
 
 Generation = struct([("index", "u32")])
+
+# Where a body's proxy stands, for rays that look for the next one.
+BodyBox = struct([("object_from_world", "mat4x4f"), ("center", "vec3f"), ("scale", "f32"), ("half", "vec3f")])
 
 TraceParams = struct([("count", "u32")])
 

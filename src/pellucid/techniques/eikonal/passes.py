@@ -29,7 +29,8 @@ from pellucid.techniques.eikonal.resources import (
     scatters,
     upload,
 )
-from pellucid.techniques.eikonal.wavelengths import at_sample, draws_of
+from pellucid.techniques.eikonal.relay import Relay, list_bytes
+from pellucid.techniques.eikonal.wavelengths import at_sample, common_draws
 
 if TYPE_CHECKING:
     from pellucid.scene import Camera, LightQuality, RefractiveVolume
@@ -68,11 +69,12 @@ class EikonalTechnique:
         self.device = device
         self._loaded: dict[Any, _Loaded] = {}
         self.bodies: list[Body] = []
-        self._drawn: dict[int, Body] = {}
         self._kernels: dict[Any, ComputeKernel] = {}
         self._no_looks = device.buffer(np.array([(0, 1, 1, 0)] * LOOK_QUEUES, LookCount), "storage", "no looks")
         self._brdfs = BrdfTables(device)
         self._lists: dict[str, Any] = {}
+        self._draws: list[Any] = []
+        self._relay = Relay(device)
         self._capacity = 0
         self._simulator: LightSimulator | None = None
         self._lit: dict[int, Any] = {}
@@ -89,7 +91,8 @@ class EikonalTechnique:
     @property
     def nbytes(self) -> int:
         """Bytes of GPU memory held: volumes, and the lists of rays."""
-        return sum(v.textures.nbytes for v in self._loaded.values()) + sum(b.size for b in self._lists.values())
+        lists = sum(b.size for b in self._lists.values()) + self._relay.nbytes
+        return sum(v.textures.nbytes for v in self._loaded.values()) + lists
 
     def prepare(self, objects: Sequence[RefractiveVolume], surroundings: Surroundings) -> None:
         """Make every volume resident, drop those that are gone, and write the parameters of each object."""
@@ -106,10 +109,11 @@ class EikonalTechnique:
             # Alone in the scene it may have all of its box: rays are not sent from body to body.
             box = volume.tight if len(objects) > 1 else whole_box(volume.prepared)
             body = self._place(item, volume, box, before)
-            self._write_parameters(body, surroundings)
             bodies.append(body)
         self.bodies = bodies
-        self._drawn = {id(item): body for body in bodies for item in body.objects}
+        for body in bodies:
+            self._write_parameters(body, surroundings)
+        self._relay.prepare(bodies)
 
     def illuminate(self, lights: Sequence[Any], surroundings: Surroundings) -> None:
         """Follow the light of all lamps through the bodies that show it; what has not changed is kept.
@@ -213,7 +217,7 @@ class EikonalTechnique:
         """The body of an object; buffers of the one before are used again if it has the same volume."""
         placed = Body((item,), volume.prepared, volume.textures, [], item.object_to_world(), box, item.quality)
         if before is not None and before.textures is volume.textures:
-            placed.uniforms, placed.draws = before.uniforms, before.draws
+            placed.uniforms = before.uniforms
         else:
             each = volume.prepared.channels
             placed.uniforms = [self.device.buffer(VolumeParams.itemsize, "uniform", "volume") for _ in each]
@@ -231,111 +235,123 @@ class EikonalTechnique:
                 body.prepared, body.textures, channel, body.quality, body.world, body.box, body.meets_meshes
             )
             self._brdfs.write(record, body.objects[0])
+            record["body"], record["body_count"] = self.bodies.index(body), len(self.bodies)
             self.device.write(uniform, record.reshape(1))
 
     def draw(
-        self,
-        encoder: Any,
-        item: RefractiveVolume,
-        targets: Targets,
-        camera: Camera,
-        surroundings: Surroundings,
-        timer: Any = None,
+        self, encoder: Any, targets: Targets, camera: Camera, surroundings: Surroundings, timer: Any = None
     ) -> None:
-        """Encode the draws of one volume over what is in the targets."""
-        body = self._drawn[id(item)]
-        shifted = at_sample(body.prepared, surroundings.sample_index)
-        if shifted is not body.prepared:
-            body.prepared = shifted
-            self._write_volume(body)
-        covered = _screen_rectangle(body, camera, targets.size)
-        if covered is None:
+        """Encode the draws of all bodies over what is in the targets."""
+        self._shift_wavelengths(surroundings.sample_index)
+        covered = {n: r for n, b in enumerate(self.bodies) if (r := _screen_rectangle(b, camera, targets.size))}
+        if not covered:
             return
-        bands = _bands(covered)
+        bands = _bands(_around(list(covered.values())))
         self._reserve(max(width * height for _, _, width, height in bands))
-        while len(body.draws) < len(bands):
-            each = body.uniforms
-            body.draws.append([self.device.buffer(DrawParams.itemsize, "uniform", "draw") for _ in each])
-        for band, draws in zip(bands, body.draws, strict=False):
-            self._draw_band(encoder, body, draws, band, targets, surroundings, timer)
+        draws = common_draws([body.prepared for body in self.bodies])
+        while len(self._draws) < len(bands) * len(draws):
+            self._draws.append(self.device.buffer(DrawParams.itemsize, "uniform", "draw"))
+        for number, band in enumerate(bands):
+            seen = [n for n, rectangle in covered.items() if _overlap(rectangle, band)]
+            if not seen:
+                continue
+            for index, (channels, weights) in enumerate(draws):
+                draw = self._draws[number * len(draws) + index]
+                _write_draw(self.device, draw, band, weights, first=index == 0)
+                shared = {
+                    **surroundings.bindings,
+                    **self._lists,
+                    "screen_color": targets.color,
+                    "screen_depth": targets.depth,
+                    "draw": draw,
+                }
+                self._draw_band(encoder, band, seen, channels, shared, surroundings, timer)
+            self._composite.run(
+                encoder,
+                color=[targets.color_view],
+                depth=targets.depth_view,
+                bindings={"draw": draw, "picture": self._lists["picture"]},
+                scissor=band,
+                timer=timer,
+                label="eikonal composite",
+            )
+
+    def _shift_wavelengths(self, sample: int) -> None:
+        for body in self.bodies:
+            shifted = at_sample(body.prepared, sample)
+            if shifted is not body.prepared:
+                body.prepared = shifted
+                self._write_volume(body)
 
     def _reserve(self, pixels: int) -> None:
         """Room for `pixels` pixels and the rays that wait for them; it only grows."""
-        if pixels <= self._capacity:
-            return
-        self._capacity = pixels
-        sizes = {
-            "drawn": 16 * pixels,
-            "picture": 16 * pixels,
-            "look_rays": LookRay.itemsize * pixels * LOOKS_PER_PIXEL,
-            "look_values": 16 * pixels * LOOKS_PER_PIXEL,
-        }
-        self._lists = {name: self.device.buffer(size, "storage", name) for name, size in sizes.items()}
-        self._lists["look_queue"] = self.device.buffer(LOOK_QUEUES * LookCount.itemsize, "indirect", "look queue")
+        if pixels > self._capacity:
+            self._capacity = pixels
+            sizes = {
+                "drawn": 16 * pixels,
+                "picture": 16 * pixels,
+                "look_rays": LookRay.itemsize * pixels * LOOKS_PER_PIXEL,
+                "look_values": 16 * pixels * LOOKS_PER_PIXEL,
+            }
+            self._lists = {name: self.device.buffer(size, "storage", name) for name, size in sizes.items()}
+            self._lists["look_list"] = self.device.buffer(list_bytes(pixels), "indirect", "rays that look around")
+        self._lists |= self._relay.reserve(self._capacity, len(self.bodies) > 1)
 
     def _draw_band(
         self,
         encoder: Any,
-        body: Body,
-        draws: list[Any],
         band: Rectangle,
-        targets: Targets,
+        seen: Sequence[int],
+        channels: Sequence[int],
+        shared: dict[str, Any],
         surroundings: Surroundings,
         timer: Any,
     ) -> None:
-        """March, look, sum, for each wavelength; then put the band into the picture."""
+        """March, look, sum, for one wavelength. seen : numbers of the bodies that camera rays can meet."""
         width, height = band[2:]
-        for number, (channel, weights) in enumerate(draws_of(body.prepared)):
-            _write_draw(self.device, draws[number], band, weights, first=number == 0)
-            shared = {
-                **surroundings.bindings,
-                **self._lists,
-                "screen_color": targets.color,
-                "screen_depth": targets.depth,
-                "draw": draws[number],
-            }
-            encoder.copy_buffer_to_buffer(self._no_looks, 0, self._lists["look_queue"], 0, self._no_looks.size)
-            volume = {**body.textures.channels[channel], **body.light, "volume": body.uniforms[channel]}
-            blocks = (-(-width // 8), -(-height // 8), 1)
-            lamps = body.objects[0].gloss > 0.0 and surroundings.light_count > 0
-            march = self._march_kernel(body, lamps)
-            march.run(blocks, {**shared, **volume}, encoder, timer, "eikonal march")
-            waiting = (self._lists["look_queue"], 0)
-            self._look_kernel(body, surroundings).run(
-                (0, 0, 0), shared, encoder, timer, "eikonal look", indirect=waiting
+        has_meshes = surroundings.triangle_count > 0
+        objects = [body.objects[0] for body in self.bodies]
+        glints = [item.gloss > 0.0 and surroundings.light_count > 0 for item in objects]
+        marches = [
+            (
+                self._march_kernel(body, glints[number]),
+                {**shared, **body.textures.channels[channel], **body.light, "volume": body.uniforms[channel]},
             )
-            if lamps or spreading(body.objects[0]):
-                lobes = (self._lists["look_queue"], LookCount.itemsize)
-                self._lobe_kernel(body, surroundings).run(
-                    (0, 0, 0), {**shared, **self._brdfs.bindings}, encoder, timer, "eikonal lobe", indirect=lobes
-                )
-            self._sum.run((-(-width * height // 64), 1, 1), shared, encoder, timer, "eikonal sum")
-        self._composite.run(
-            encoder,
-            color=[targets.color_view],
-            depth=targets.depth_view,
-            bindings={"draw": draws[0], "picture": self._lists["picture"]},
-            scissor=band,
-            timer=timer,
-            label="eikonal composite",
-        )
+            for number, (body, channel) in enumerate(zip(self.bodies, channels, strict=True))
+        ]
+        blocks = (-(-width // 8), -(-height // 8), 1)
+        looks = shared["look_list"]
+        encoder.copy_buffer_to_buffer(self._no_looks, 0, looks, 0, self._no_looks.size)
+        if len(marches) > 1:
+            trace = has_meshes and not self._by_screen
+            self._relay.run(encoder, blocks, width * height, seen, marches, shared, trace, timer)
+        else:
+            kernel, bindings = marches[0]
+            kernel.run(blocks, bindings, encoder, timer, "eikonal march")
+        constants = {"HAS_MESHES": float(has_meshes), **surroundings.shading_constants}
+        look = self._kernel("look", {**constants, "SCREEN_SPACE": float(self._by_screen)})
+        look.run((0, 0, 0), shared, encoder, timer, "eikonal look", indirect=(looks, 0))
+        rough = any(spreading(item) for item in objects)
+        if any(glints) or rough:
+            lobe = self._kernel("look_lobe", {**constants, "LOBES": float(rough)})
+            tables = {**shared, **self._brdfs.bindings}
+            lobe.run((0, 0, 0), tables, encoder, timer, "eikonal lobe", indirect=(looks, LookCount.itemsize))
+        self._sum.run((-(-width * height // 64), 1, 1), shared, encoder, timer, "eikonal sum")
+
+    @property
+    def _by_screen(self) -> bool:
+        """Rays look into the picture only if all objects are content with that."""
+        return all(item.surroundings == "screen" for body in self.bodies for item in body.objects)
 
     def _march_kernel(self, body: Body, lamps: bool) -> ComputeKernel:
         prepared = body.prepared
         constants = {**constants_of(prepared, body.quality), "MEETS_MESHES": float(body.meets_meshes)}
         constants |= {"GLINTS": float(lamps), "ROUGH": float(spreading(body.objects[0]))}
+        constants["RELAYED"] = float(len(self.bodies) > 1)
         if prepared.sharp:
             constants["GRADED"] = float(prepared.graded)
         name = "view_sharp" if prepared.sharp else "view_smooth"
         return self._kernel(name, constants)
-
-    def _look_kernel(self, body: Body, surroundings: Surroundings) -> ComputeKernel:
-        own = {"SCREEN_SPACE": body.objects[0].surroundings == "screen", "HAS_MESHES": surroundings.triangle_count > 0}
-        return self._kernel("look", {**{k: float(v) for k, v in own.items()}, **surroundings.shading_constants})
-
-    def _lobe_kernel(self, body: Body, surroundings: Surroundings) -> ComputeKernel:
-        own = {"LOBES": spreading(body.objects[0]) > 0, "HAS_MESHES": surroundings.triangle_count > 0}
-        return self._kernel("look_lobe", {**{k: float(v) for k, v in own.items()}, **surroundings.shading_constants})
 
     def _kernel(self, name: str, constants: dict[str, float]) -> ComputeKernel:
         key = (name, *constants.items())
@@ -357,6 +373,16 @@ def _bands(rectangle: Rectangle) -> list[Rectangle]:
     x, y, width, height = rectangle
     rows = max(1, BAND_PIXELS // width)
     return [(x, y + at, width, min(rows, height - at)) for at in range(0, height, rows)]
+
+
+def _around(rectangles: Sequence[Rectangle]) -> Rectangle:
+    corners_ = np.array([(x, y, x + width, y + height) for x, y, width, height in rectangles])
+    low, high = corners_[:, :2].min(axis=0), corners_[:, 2:].max(axis=0)
+    return int(low[0]), int(low[1]), int(high[0] - low[0]), int(high[1] - low[1])
+
+
+def _overlap(a: Rectangle, b: Rectangle) -> bool:
+    return all(a[k] < b[k] + b[k + 2] and b[k] < a[k] + a[k + 2] for k in range(2))
 
 
 def _key(item: RefractiveVolume) -> Any:

@@ -57,7 +57,8 @@ def _matter(prepared: Prepared) -> np.ndarray:
         indices = [np.abs(c.index) for c in prepared.channels if c.index is not None]
         held = np.any([index > NOTHING * index.max() for index in indices], axis=0)
     scattering = None if prepared.scattering is None else prepared.scattering[..., :3]
-    for field in (prepared.absorption, prepared.emission, scattering, prepared.opaque):
+    coverage = None if prepared.opaque is None else prepared.opaque[..., 3:]
+    for field in (prepared.absorption, scattering, prepared.emission, coverage):
         if field is not None:
             held = held | (field > 0.0).any(axis=-1)
     return np.asarray(held)

@@ -2,23 +2,24 @@
 
 //!import surroundings/shaders/irradiance
 //!import surroundings/shaders/radiance
+//!import techniques/eikonal/shaders/ray_list
 //!import techniques/eikonal/shaders/screen
 //!struct LookRay from techniques.eikonal.layouts
-//!struct LookCount from techniques.eikonal.layouts
 
 override HAS_MESHES: bool = true;
 override SCREEN_SPACE: bool = false;   // see nearby geometry in the picture drawn so far instead of by rays
 
-@group(0) @binding(0) var<storage, read> look_queue: array<LookCount, 2>;
+@group(0) @binding(0) var<storage, read> look_list: FinishedList;
 @group(0) @binding(1) var<storage, read> look_rays: array<LookRay>;
 @group(0) @binding(2) var<storage, read_write> look_values: array<vec4f>;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    if (id.x >= look_queue[0].count) { return; }
-    let ray = look_rays[id.x];
+    if (id.x >= look_list.heads[0].count) { return; }
+    let slot = look_list.slots[id.x];
+    let ray = look_rays[slot];
     var seen = vec3f(0.0);
-    if (ray.kind == 1u) {
+    if (ray.kind % 8u == 1u) {
         seen = surface_irradiance(ray.origin, ray.direction);
     } else if (SCREEN_SPACE) {
         seen = screen_radiance(ray.origin, ray.direction);
@@ -27,6 +28,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     } else {
         seen = environment_radiance(ray.direction);
     }
-    let value = look_values[ray.slot];
-    look_values[ray.slot] = vec4f(value.rgb * seen, value.w);
+    let value = look_values[slot];
+    look_values[slot] = vec4f(value.rgb * seen, value.w);
 }

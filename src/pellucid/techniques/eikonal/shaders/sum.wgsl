@@ -14,8 +14,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let index = id.x;
     if (index >= pixels) { return; }
     var value = drawn[index];
-    let used = u32(look_values[index].w);
-    for (var k = 0u; k < used; k++) { value += vec4f(look_values[k * pixels + index].rgb, 0.0); }
+    for (var left = u32(look_values[index].w); left != 0u; left &= left - 1u) {
+        value += vec4f(look_values[countTrailingZeros(left) * pixels + index].rgb, 0.0);
+    }
     // Another wavelength may show the volume where this one does not.
     let at = draw.corner + vec2u(index % draw.size.x, index / draw.size.x);
     if (value.w < 0.0) { value = vec4f(textureLoad(screen_color, at, 0).rgb, value.w); }

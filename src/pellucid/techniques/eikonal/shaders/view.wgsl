@@ -4,6 +4,7 @@
 //!import surroundings/shaders/environment
 //!import surroundings/shaders/raycast
 //!import techniques/eikonal/shaders/looks
+//!import techniques/eikonal/shaders/pixels
 //!import techniques/eikonal/shaders/proxy
 //!import techniques/eikonal/shaders/splitting
 //!import techniques/eikonal/shaders/bindings
@@ -21,6 +22,13 @@ struct ViewRay {
     d: vec3f,           // unit, object space
     distance: f32,      // to there, world metres
     meets: bool,
+    hidden: bool,       // something nearer is drawn there already
+    exists: bool,
+    weight: vec3f,
+    kind: u32,          // RAY_ bits
+    others: u32,        // planes that other rays of the pixel have
+    origin_ws: vec3f,
+    direction_ws: vec3f,
 }
 
 override GLINTS: bool = false;     // lamps glint in smooth boundaries
@@ -28,26 +36,14 @@ override ROUGH: u32 = 0u;          // boundaries are rough: BY_GGX, BY_TABLE, or
 
 const BY_GGX = 1u;
 const BY_TABLE = 2u;
-const UNSEEN = -1.0;
 
 // rgb: radiance; w: value for the depth buffer, or UNSEEN where the picture stays as it is
 @group(0) @binding(9) var<storage, read_write> drawn: array<vec4f>;
 @group(0) @binding(13) var screen_depth: texture_depth_2d;
+// Pixels whose rays enter each body (meeting.wgsl)
+@group(0) @binding(19) var<storage, read> body_lists: array<u32>;
 
-// A pixel for each invocation of an 8 x 8 workgroup; eight neighbours in a row of lanes form a block of 4 x 2.
-fn pixel_of(group: vec2u, lane: u32) -> vec2u {
-    let x = (lane & 3u) | (((lane >> 3u) & 1u) << 2u);
-    let y = ((lane >> 2u) & 1u) | ((lane >> 4u) << 1u);
-    return group * 8u + vec2u(x, y);
-}
-
-fn to_object(ray: CameraRay) -> ViewRay {
-    let x = (volume.object_from_world * vec4f(ray.origin, 1.0)).xyz;
-    let d = normalize((volume.object_from_world * vec4f(ray.direction, 0.0)).xyz);
-    let span = proxy_span(x, d);
-    let near = max(span.x, 0.0);
-    return ViewRay(x + near * d, d, near * volume.scale, span.x < span.y && span.y > 0.0);
-}
+var<private> rays_left: u32;       // bits of the planes that may hold rays which have still to be followed
 
 fn to_world(x: vec3f) -> vec3f {
     return (volume.world_from_object * vec4f(x, 1.0)).xyz;
@@ -127,25 +123,88 @@ fn opaque_ending(x: vec3f, d: vec3f, weight: vec3f) -> Ending {
     return Ending(LOOK_IRRADIANCE, x, normal, weight * opaque_at(x).rgb / 3.14159265);
 }
 
-// Where a pixel's ray enters, unless something nearer is drawn there already.
-fn enter(pixel: vec2u, ray: CameraRay) -> ViewRay {
+// The ray of an invocation's pixel, or the first of those that enter this body there.
+fn first_ray(group: vec2u, lane: u32) -> ViewRay {
+    if (RELAYED) {
+        let index = group.x * 64u + lane;
+        if (index >= body_lists[4u * volume.body + 3u]) { return ViewRay(); }
+        look_pixel = body_lists[list_start(volume.body, volume.body_count, draw.size.x * draw.size.y) + index];
+        look_used = u32(look_values[look_pixel].w);
+        rays_left = look_used;
+        return next_ray();
+    }
+    let pixel = pixel_of(group, lane);
+    if (any(pixel >= draw.size)) { return ViewRay(); }
     look_pixel = pixel.y * draw.size.x + pixel.x;
-    look_used = 0u;
+    let ray = camera_ray(vec2f(draw.corner + pixel) + 0.5);
+    return enter(ray.origin, ray.direction, vec3f(1.0), RAY_UNTOUCHED);
+}
+
+fn next_ray() -> ViewRay {
+    if (!RELAYED) { return ViewRay(); }
+    while (rays_left != 0u) {
+        let plane = countTrailingZeros(rays_left);
+        rays_left &= rays_left - 1u;
+        let slot = slot_of(plane);
+        let ray = look_rays[slot];
+        if ((ray.kind & RAY_ENTERS) != 0u && ray.body == volume.body) {
+            look_used &= ~(1u << plane);
+            return enter(ray.origin, ray.direction, look_values[slot].rgb, ray.kind & (RAY_UNTOUCHED | RAY_SURFACELESS));
+        }
+    }
+    return ViewRay();
+}
+
+// Where a ray enters, unless something nearer is drawn there already.
+fn enter(origin: vec3f, direction: vec3f, weight: vec3f, kind: u32) -> ViewRay {
+    let x = (volume.object_from_world * vec4f(origin, 1.0)).xyz;
+    let d = normalize((volume.object_from_world * vec4f(direction, 0.0)).xyz);
+    let span = proxy_span(x, d);
+    let near = max(span.x, 0.0);
+    let meets = span.x < span.y && span.y > 0.0;
+    var entry = ViewRay(x + near * d, d, near * volume.scale, meets, false, true, weight, kind, look_used, origin, direction);
+    entry.hidden = depth_of(origin + (entry.distance + volume.scale * volume.voxel) * direction) < depth_before();
+    entry.hidden = entry.hidden && (kind & RAY_UNTOUCHED) != 0u;
+    entry.meets = entry.meets && !entry.hidden;
+    look_body = volume.body;
     ambient_radiance = environment_mean_radiance();
-    var entry = to_object(ray);
-    let before = textureLoad(screen_depth, draw.corner + pixel, 0);
-    entry.meets = entry.meets && depth_of(ray.origin + (entry.distance + volume.scale * volume.voxel) * ray.direction) >= before;
     return entry;
 }
 
+fn depth_before() -> f32 {
+    let pixel = vec2u(look_pixel % draw.size.x, look_pixel / draw.size.x);
+    return textureLoad(screen_depth, draw.corner + pixel, 0);
+}
+
 // Keep what is known of a pixel so far; the rays that it waits for are added by `sum`.
-fn keep(pixel: vec2u, ray: CameraRay, seen: Seen) {
-    let before = textureLoad(screen_depth, draw.corner + pixel, 0);
-    let own = depth_of(ray.origin + seen.distance * ray.direction);
+fn keep(entry: ViewRay, seen: Seen) {
+    let before = depth_before();
+    let own = depth_of(entry.origin_ws + seen.distance * entry.direction_ws);
     let has_surface = seen.distance >= 0.0;
     let visible = seen.touched && (own >= before || !has_surface);
     let depth = select(UNSEEN, select(before, own, has_surface), visible);
-    drawn[look_pixel] = vec4f(seen.radiance, depth);
+    if (!RELAYED) {
+        drawn[look_pixel] = vec4f(seen.radiance, depth);
+    } else if (seen.touched) {
+        let known = drawn[look_pixel];
+        let first = (entry.kind & RAY_UNTOUCHED) != 0u;
+        let deepens = (entry.kind & RAY_SURFACELESS) != 0u && known.w >= 0.0 && visible;
+        drawn[look_pixel] = vec4f(known.rgb + seen.radiance, select(known.w, depth, first || deepens));
+        if (entry.kind != 0u && !has_surface) { mark_surfaceless(look_used & ~entry.others); }
+    } else if (!entry.hidden) {
+        // On to the next body, from where it entered this one: meshes in here have still to be looked for.
+        if (look_later(LOOK_ALONG, to_world(entry.x), entry.direction_ws, entry.weight)) {
+            look_rays[slot_of(countTrailingZeros(look_used & ~entry.others))].kind |= entry.kind;
+        }
+    }
+}
+
+// The rays that come from one that met no surface, by their planes.
+fn mark_surfaceless(planes: u32) {
+    for (var left = planes; left != 0u; left &= left - 1u) { look_rays[slot_of(countTrailingZeros(left))].kind |= RAY_SURFACELESS; }
+}
+
+fn finish_pixel() {
     if (look_used == 0u) { look_values[look_pixel] = vec4f(0.0); }
     look_values[look_pixel].w = f32(look_used);
 }

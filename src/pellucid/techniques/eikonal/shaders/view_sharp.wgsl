@@ -16,13 +16,15 @@ struct Branch {
 
 @compute @workgroup_size(64)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let pixel = pixel_of(group.xy, lane);
-    if (any(pixel >= draw.size)) { return; }
-    let ray = camera_ray(vec2f(draw.corner + pixel) + 0.5);
-    let entry = enter(pixel, ray);
-    var seen = Seen(vec3f(0.0), 0.0, false);
-    if (entry.meets) { seen = look_into(entry); }
-    keep(pixel, ray, seen);
+    var entry = first_ray(group.xy, lane);
+    if (!entry.exists) { return; }
+    while (entry.exists) {
+        var seen = Seen(vec3f(0.0), 0.0, false);
+        if (entry.meets) { seen = look_into(entry); }
+        keep(entry, seen);
+        entry = next_ray();
+    }
+    finish_pixel();
 }
 
 fn look_into(entry: ViewRay) -> Seen {
@@ -32,7 +34,7 @@ fn look_into(entry: ViewRay) -> Seen {
     var waiting = 0u;
     var crossing = Crossing();
     var radiance = vec3f(0.0);
-    var weight = vec3f(1.0);
+    var weight = entry.weight;
     var generation = 0u;
     var first = select(-1.0, entry.distance, walk.region < AMBIENT);
     var going = true;

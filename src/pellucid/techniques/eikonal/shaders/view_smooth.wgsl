@@ -5,13 +5,15 @@
 
 @compute @workgroup_size(64)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let pixel = pixel_of(group.xy, lane);
-    if (any(pixel >= draw.size)) { return; }
-    let ray = camera_ray(vec2f(draw.corner + pixel) + 0.5);
-    let entry = enter(pixel, ray);
-    var seen = Seen(vec3f(0.0), 0.0, false);
-    if (entry.meets) { seen = look_through(entry); }
-    keep(pixel, ray, seen);
+    var entry = first_ray(group.xy, lane);
+    if (!entry.exists) { return; }
+    while (entry.exists) {
+        var seen = Seen(vec3f(0.0), 0.0, false);
+        if (entry.meets) { seen = look_through(entry); }
+        keep(entry, seen);
+        entry = next_ray();
+    }
+    finish_pixel();
 }
 
 fn look_through(entry: ViewRay) -> Seen {
@@ -70,6 +72,9 @@ fn look_through(entry: ViewRay) -> Seen {
     let meets_voxel = event == OPAQUE && !blocked;
     if (meets_voxel) { ending = opaque_ending(walk.x, d, walk.transmittance); }
     let touched = first >= 0.0 || meets_voxel || has_changed(walk);
+    mirrored.weight *= entry.weight;
+    ending.weight *= entry.weight;
+    radiance *= entry.weight;
     if (touched) { radiance += end_ray(mirrored) + end_ray(ending); }
     // Smoke and hot air have no surface, an opaque voxel in them has.
     var surface = select(-1.0, bent, volume.writes_depth != 0u);
