@@ -20,6 +20,7 @@ from pellucid.techniques.eikonal.layouts import DrawParams, LookCount, LookRay, 
 from pellucid.techniques.eikonal.light import LightSimulator, check_lights, flux_bound
 from pellucid.techniques.eikonal.prepare import Prepared, prepare
 from pellucid.techniques.eikonal.proxies import Box, corners, tight_box, whole_box
+from pellucid.techniques.eikonal.relay import Relay, list_bytes
 from pellucid.techniques.eikonal.resources import (
     LOOKS_PER_PIXEL,
     VolumeTextures,
@@ -29,7 +30,6 @@ from pellucid.techniques.eikonal.resources import (
     scatters,
     upload,
 )
-from pellucid.techniques.eikonal.relay import Relay, list_bytes
 from pellucid.techniques.eikonal.wavelengths import at_sample, common_draws
 
 if TYPE_CHECKING:
