@@ -12,6 +12,7 @@ from pellucid.errors import AssetError, NoAdapterError, PellucidError, SceneErro
 
 if TYPE_CHECKING:
     from pellucid import media, optics
+    from pellucid.animation import animate
     from pellucid.fields.volume import Region, Volume
     from pellucid.frame import Frame
     from pellucid.gpu import Device
@@ -44,7 +45,7 @@ _HOME = {
     "Region": "fields.volume", "Volume": "fields.volume",
     "Frame": "frame", "Device": "gpu", "Renderer": "renderer", "Rays": "techniques.eikonal.trace",
     "Irradiance": "techniques.eikonal.light", "illuminate": "session",
-    "render": "session", "trace": "session", "probe": "session",
+    "render": "session", "trace": "session", "probe": "session", "animate": "animation",
 }  # fmt: skip
 _MODULES = ("errors", "fields", "gpu", "io", "media", "optics", "scene")
 
@@ -74,6 +75,7 @@ __all__ = [
     "ShaderError",
     "TabulatedBRDF",
     "Volume",
+    "animate",
     "illuminate",
     "load_scene",
     "media",

@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-COMMANDS = ("demo", "render", "trace", "media", "doctor", "bench")
+COMMANDS = ("demo", "render", "animate", "trace", "media", "doctor", "bench")
 
 
 def test_version(pellucid):
@@ -36,7 +36,15 @@ def test_every_command_explains_itself_with_examples(pellucid, command):
 
 @pytest.mark.parametrize(
     "arguments",
-    [["draw"], ["--colour"], ["render"], ["render", "a.obj"], ["media", "--json"], ["bench", "--repeat", "0"]],
+    [
+        ["draw"],
+        ["--colour"],
+        ["render"],
+        ["render", "a.obj"],
+        ["animate", "a.toml"],
+        ["media", "--json"],
+        ["bench", "--repeat", "0"],
+    ],
 )
 def test_a_call_that_is_not_understood_exits_with_2(pellucid, arguments):
     said = pellucid(*arguments)

@@ -27,6 +27,7 @@ ARROWS: dict[str, set[str]] = {
     "renderer": {"techniques", "surroundings", "scene", "gpu", "frame"},
 }
 EDGE = {
+    "animation",
     "__init__",
     "__main__",
     "session",
@@ -43,6 +44,7 @@ KEPT_TO: dict[str, set[str]] = {
     "wgpu": {"gpu", "surroundings", "techniques", "renderer"} | EDGE,
     "trimesh": {"io"},
     "OpenImageIO": {"io"},
+    "av": {"io"},
     "typer": EDGE,
     "rich": EDGE,
 }

@@ -19,7 +19,7 @@ SCENE = [
     "RefractiveVolume",
     "Quality",
 ]
-CALLS = ["render", "trace", "probe"]
+CALLS = ["render", "animate", "trace", "probe"]
 RESULTS = ["Frame", "Rays"]
 ERRORS = ["PellucidError", "NoAdapterError", "AssetError", "SceneError", "ShaderError"]
 ROOMS = ["media", "optics"]

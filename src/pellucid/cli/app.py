@@ -12,6 +12,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
+from pellucid.cli.animate import animate
 from pellucid.cli.bench import bench
 from pellucid.cli.console import complain, outcome
 from pellucid.cli.demo import demo
@@ -92,6 +93,12 @@ _add(
     "pellucid render cup.stl -o cup.exr --medium amber --resolution 192 --up z",
     "pellucid render ring.obj -o ring.png --medium diamond --environment sky",
     "pellucid render scene.toml -o scene.png --size 1920x1080 --samples 64",
+)
+_add(
+    animate,
+    "pellucid animate wine-glass --light-orbit 90 --frames 24 -o out/wine",
+    "pellucid animate scene.toml --orbit 360 --frames 120 --size 1280x720 -o out/turn --video turn.mp4",
+    "pellucid animate scene.toml --orbit 360 --frames 120 --only 60:120 -o out/turn",
 )
 _add(
     trace,

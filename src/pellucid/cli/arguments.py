@@ -89,6 +89,14 @@ def parse_positive(text: str | float) -> float:
     return numbers[0]
 
 
+def parse_degrees(text: str | float) -> float:
+    """A finite angle."""
+    numbers = _numbers(str(text))
+    if len(numbers) != 1:
+        raise typer.BadParameter(f"{text!r} is not an angle; write degrees, such as 90 or -45")
+    return numbers[0]
+
+
 def _numbers(text: str) -> list[float]:
     """The finite numbers in a list with commas; none at all when one of them is not."""
     try:
@@ -131,6 +139,21 @@ def check_output(path: Path, suffixes: tuple[str, ...], verb: str = "written") -
         raise AssetError(path, "is a folder and cannot be written as a file", "name a file inside it")
     check_folder(path.parent, path)
     return path
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder for what comes out, and see that it can be written to.
+
+    Raises
+    ------
+    AssetError : something else has that name, or it may not be made or written to.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        reason = f"cannot be made a folder: {error.strerror or error}"
+        raise AssetError(folder, reason, "choose another --output") from None
+    check_folder(folder)
 
 
 def check_folder(folder: Path, blame: Path | None = None) -> None:

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from pellucid.cli.arguments import Size, check_folder, check_pixels, check_size, parse_size
+from pellucid.cli.arguments import Size, check_pixels, check_size, make_folder, parse_size
 from pellucid.cli.console import Bar, complain, open_device, outcome, progress_bar, seconds
-from pellucid.errors import AssetError, SceneError
+from pellucid.errors import SceneError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -54,7 +54,7 @@ def demo(
 
     chosen = _chosen(PICTURES, only)
     check_pixels(size)
-    _make_folder(output)
+    make_folder(output)
     device = open_device()
     check_size(size, device.limits["max-texture-dimension-2d"])
     begun = time.perf_counter()
@@ -84,15 +84,6 @@ def _chosen(pictures: Sequence[Any], only: list[str] | None) -> list[tuple[int, 
             nearest = f"did you mean {close[0]}? " if close else ""
             raise SceneError("--only", f"no picture is called {name!r}", f"{nearest}there are {', '.join(names)}")
     return [(i, picture) for i, picture in enumerate(pictures, start=1) if not only or picture.name in only]
-
-
-def _make_folder(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        reason = f"cannot be made a folder: {error.strerror or error}"
-        raise AssetError(folder, reason, "choose another --output") from None
-    check_folder(folder)
 
 
 def _draw_all(chosen: list[tuple[int, Any]], folder: Path, size: Size, samples: int | None, done: list[Drawn]) -> None:
