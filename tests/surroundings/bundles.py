@@ -60,7 +60,7 @@ def land(
     outgoing = device.buffer(records, "storage", "outgoing")
     queue = device.buffer(np.array([(-(-len(records) // 64), 1, 1, len(records))], LookCount), "indirect", "queue")
     encoder = device.wgpu.create_command_encoder()
-    maps.begin(encoder, 2.0 * float(records["flux"].sum(axis=0).max()))
+    maps.begin(encoder, 2.0 * float(records["flux"].sum(axis=0).max()) or 1.0)
     maps.land(encoder, outgoing, queue)
     maps.resolve(encoder)
     device.wgpu.queue.submit([encoder.finish()])
@@ -69,3 +69,11 @@ def land(
 def total(records: np.ndarray, kind: int = OUT_CAUSTIC) -> np.ndarray:
     """Power (3,) of all bundles of a kind."""
     return records["flux"][records["kind"] == kind].sum(axis=0, dtype=np.float64)
+
+
+def joined(*parts: np.ndarray) -> np.ndarray:
+    """Lists of bundles as one; `np.concatenate` would drop the padding of the layout."""
+    out = np.zeros(sum(map(len, parts)), OutPatch)
+    for part, start in zip(parts, np.cumsum([0, *map(len, parts)]), strict=False):
+        out[start : start + len(part)] = part
+    return out

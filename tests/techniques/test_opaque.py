@@ -136,3 +136,19 @@ def test_shadow_maps_are_drawn_again_only_when_something_moved(device) -> None:
     assert not drawn(scene.replace(camera=PARALLEL, exposure=2.0))
     moved = [scene.objects[0], scene.objects[1].replace(position=(0, 1, 0)), scene.objects[2]]
     assert drawn(scene.replace(objects=moved))
+
+
+def test_a_picture_with_caustics_is_what_rays_see(draw) -> None:
+    """The same maps for the pixels of the picture and for the rays that leave glass."""
+    from surroundings.bundles import beam, joined, land
+
+    light = beam((0, 2, 0), (0, 0, 1.5), (1.5, 0, 0), 50, irradiance=3.0, way=(0.1, -1, 0))
+    shade = beam((0, 2, 0), (0, 0, 1), (1, 0, 0), 50, irradiance=0.8, way=(-0.4, -0.8, -0.4), kind=1)
+    plain, _, _ = draw(still_life(PERSPECTIVE), SIZE)
+    radiance, _, query = draw(
+        still_life(PERSPECTIVE), SIZE, before=lambda around: land(around, joined(light, shade), 0.02)
+    )
+    origins, directions = (a.reshape(-1, 3) for a in query.camera_rays())
+    seen = query.radiance(origins, directions).reshape(radiance.shape)
+    assert (~np.isclose(radiance, seen, rtol=2e-3, atol=1e-4).all(axis=-1)).sum() <= 0.003 * SIZE[0] * SIZE[1]
+    assert (radiance > plain + 0.1).any() and (radiance < plain - 0.01).any()

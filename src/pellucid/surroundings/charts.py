@@ -103,6 +103,8 @@ def build_charts(
     """
     texel_m = checks.number("texel_m", texel_m, low=0.0, exclusive=True)
     corners = np.asarray(corners, np.float64)
+    if not len(corners):
+        return no_charts(0)
     face, back = _receiving_sides(corners, mesh, single_sided, reaches)
     if not len(face):
         return no_charts(len(corners))

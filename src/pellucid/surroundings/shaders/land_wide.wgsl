@@ -4,6 +4,7 @@
 //!struct LookCount from surroundings.layouts
 
 const PARTS = 8u;
+const POINT_EXTENT = 0.5;  // texels
 const BLOCKS = 4u;  // at most, along each side of a part
 
 @group(0) @binding(3) var<storage, read> wide_queue: LookCount;
@@ -37,21 +38,17 @@ fn land_part(index: u32, part: u32) {
     let bundle = outgoing[index];
     let low = vec2f(f32(part % PARTS), f32(part / PARTS)) / f32(PARTS);
     let middle = low + 0.5 / f32(PARTS);
-    let start = mix(mix(bundle.corner_0, bundle.corner_1, middle.x), mix(bundle.corner_2, bundle.corner_3, middle.x), middle.y);
-    let way = mix(mix(bundle.way_0, bundle.way_1, middle.x), mix(bundle.way_2, bundle.way_3, middle.x), middle.y);
-    let point = land_ray(start, normalize(way));
+    let point = land_ray(bundle_point(bundle, middle), bundle_direction(bundle, middle));
     let units = bundle.flux * (landing.units_per_flux / f32(PARTS * PARTS));
     let noise = bundle_noise(bundle, 1u + part);
-    let whole = charts[0] == charts[1] && charts[0] == charts[2] && charts[0] == charts[3] && charts[0] == point.chart;
-    let spread = Quad(corners[0], corners[1], corners[2], corners[3]);
-    let here = Quad(point.at, point.at, point.at, point.at);
     if point.chart == 0u {
         miss(units, bundle.kind, noise);
         return;
     }
-    var q = here;
-    if whole {
-        q = quad_part(spread, low, low + 1.0 / f32(PARTS));
+    let whole = charts[0] == charts[1] && charts[0] == charts[2] && charts[0] == charts[3] && charts[0] == point.chart;
+    var q = quad_part(Quad(corners[0], corners[1], corners[2], corners[3]), low, low + 1.0 / f32(PARTS));
+    if !whole {
+        q = torn_part(bundle, low, landed_triangle, point);
     }
     let blocks = clamp(u32(ceil(quad_extent(q) / SPLAT_WINDOW)), 1u, BLOCKS);
     for (var k = 0u; k < blocks * blocks; k++) {
@@ -63,4 +60,18 @@ fn land_part(index: u32, part: u32) {
         let kept = quad_part(block, vec2f(shrink), vec2f(1.0 - shrink));
         splat(kept, point, units / f32(blocks * blocks), bundle.kind, fract(noise + 0.618034 * f32(k)));
     }
+}
+
+// Where a part lies whose bundle is torn: on the plane that its middle hits. A small one goes to that point alone, for
+// nobody knows how much of it hangs over the edge; a large one would leave dots.
+fn torn_part(bundle: OutPatch, low: vec2f, triangle: u32, point: ChartPoint) -> Quad {
+    let high = low + 1.0 / f32(PARTS);
+    let q = Quad(
+        land_on_plane(bundle, low, triangle, point), land_on_plane(bundle, vec2f(high.x, low.y), triangle, point),
+        land_on_plane(bundle, vec2f(low.x, high.y), triangle, point), land_on_plane(bundle, high, triangle, point)
+    );
+    if quad_extent(q) < POINT_EXTENT {
+        return Quad(point.at, point.at, point.at, point.at);
+    }
+    return q;
 }

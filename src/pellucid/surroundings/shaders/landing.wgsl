@@ -8,8 +8,29 @@ var<workgroup> missed: array<atomic<u32>, 6>;
 
 fn land_ray(origin_ws: vec3f, way_ws: vec3f) -> ChartPoint {
     let hit = nearest_surface(origin_ws, way_ws, 1e30, false);
+    landed_triangle = hit.triangle;
     let chart = select(0u, chart_of(hit.triangle, -way_ws), hit.valid);
     return chart_point(chart, origin_ws + select(0.0, hit.t, hit.valid) * way_ws);
+}
+
+var<private> landed_triangle: u32;  // of the last ray that was landed
+
+// Where a ray of a bundle meets the plane of a triangle, on the triangle's chart
+fn land_on_plane(bundle: OutPatch, st: vec2f, triangle: u32, point: ChartPoint) -> vec2f {
+    let origin_ws = bundle_point(bundle, st);
+    let way_ws = bundle_direction(bundle, st);
+    let t = triangle_plane_entry(triangle, origin_ws, way_ws).x;
+    let at = chart_point(point.chart, origin_ws + t * way_ws).at;
+    return select(point.at, at, t > 0.0);
+}
+
+// The ray at a place in 0..1 across a bundle
+fn bundle_point(bundle: OutPatch, st: vec2f) -> vec3f {
+    return mix(mix(bundle.corner_0, bundle.corner_1, st.x), mix(bundle.corner_2, bundle.corner_3, st.x), st.y);
+}
+
+fn bundle_direction(bundle: OutPatch, st: vec2f) -> vec3f {
+    return normalize(mix(mix(bundle.way_0, bundle.way_1, st.x), mix(bundle.way_2, bundle.way_3, st.x), st.y));
 }
 
 fn bundle_corner(bundle: OutPatch, corner: u32) -> vec3f {
