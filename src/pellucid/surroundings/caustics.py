@@ -117,8 +117,8 @@ class CausticMaps:
 
         Parameters
         ----------
-        flux_bound : power that all bundles of one kind and channel will not exceed together, such as
-            ``Surroundings.flux_bound``. The sums count in 2^-31 of it, and overflow at twice of it.
+        flux_bound : power that all bundles of one kind and channel will not exceed together, such as what the lamps
+            shed on all bodies. The sums count in 2^-31 of it, and overflow at twice of it.
 
         Raises
         ------

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pellucid.surroundings.charts import Reach
 from pellucid.surroundings.layouts import LIGHT_AREA, LIGHT_DIRECTIONAL, LIGHT_POINT, Light
 
 if TYPE_CHECKING:
@@ -80,31 +79,6 @@ def shadow_order(records: np.ndarray) -> list[int]:
     """Index of the light of each shadow map, in the order of their layers."""
     mapped = np.flatnonzero((records["kind"] == LIGHT_DIRECTIONAL) & (records["shadow_layer"] >= 0))
     return [int(i) for i in mapped[np.argsort(records["shadow_layer"][mapped])]]
-
-
-def flux_bound(records: np.ndarray, reaches: Sequence[Reach]) -> float:
-    """Power, in the strongest channel, that the lamps cannot exceed on balls around the bodies, shadows left aside.
-
-    Parameters
-    ----------
-    records : of dtype `layouts.Light`, without padding. reaches : the bodies.
-    """
-    total = np.zeros(3)
-    for reach in reaches:
-        cross_section = np.pi * reach.body_radius_m**2
-        for record in records:
-            d2 = float(np.sum((np.array(reach.centre) - record["position"]) ** 2))
-            edges = record["edge_u"].astype(float), record["edge_v"].astype(float)
-            half = 0.5 * float(np.linalg.norm(edges[0]) + np.linalg.norm(edges[1]))
-            # Solid angle of a ball, seen from a point outside: 2 pi (1 - cos) <= 2 pi sin^2.
-            sine2 = min(1.0, reach.body_radius_m**2 / max(max(np.sqrt(d2) - half, 0.0) ** 2, 1e-30))
-            size = {
-                LIGHT_DIRECTIONAL: cross_section,
-                LIGHT_POINT: 4.0 * np.pi if sine2 == 1.0 else 2.0 * np.pi * sine2,
-                LIGHT_AREA: float(np.linalg.norm(np.cross(*edges))) * np.pi * sine2,
-            }[int(record["kind"])]
-            total += size * record["power"]
-    return float(total.max())
 
 
 def casts_shadow(mesh: int, corners: Sequence[np.ndarray], towards: np.ndarray) -> bool:

@@ -10,8 +10,7 @@ import numpy as np
 from pellucid.surroundings import environment, geometry, lights, maps
 from pellucid.surroundings.camera import write_camera
 from pellucid.surroundings.caustics import CausticMaps
-from pellucid.surroundings.charts import Reach
-from pellucid.surroundings.layouts import MATERIAL_CASTS_SHADOW, FrameParams, Light
+from pellucid.surroundings.layouts import MATERIAL_CASTS_SHADOW, FrameParams
 
 if TYPE_CHECKING:
     from pellucid.gpu import Device
@@ -59,7 +58,6 @@ class Surroundings:
         self._layers: list[int] = []
         self._map_size = 1
         self._casters: list[list[bool]] = []
-        self._light_records = np.zeros(0, Light)
         self.caustics = CausticMaps(device, self._resources)
 
     @property
@@ -91,10 +89,6 @@ class Surroundings:
     def frame(self) -> np.ndarray:
         """The frame parameters as last uploaded, a copy."""
         return self._frame.copy()
-
-    def flux_bound(self, reaches: Sequence[Reach]) -> float:
-        """Power that the lamps cannot exceed on the bodies of some reaches: what `CausticMaps.begin` asks for."""
-        return lights.flux_bound(self._light_records, reaches)
 
     def prepare(self, scene: Scene, size: tuple[int, int]) -> None:
         """Upload what differs from the last call; the parts of a scene are told apart by identity.
@@ -173,7 +167,6 @@ class Surroundings:
         if not self._changed("lights", list(lamps)) and not moved:
             return False
         records, self._casters = lights.light_records(lamps, self._geometry.corners)
-        self._light_records = records[: len(lamps)]
         self._store("lights", records)
         self.shadow_lights = lights.shadow_order(records)
         self._prepare_shadows(len(self._casters))
