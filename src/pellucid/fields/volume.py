@@ -20,6 +20,7 @@ MOST_REGIONS = 4
 HIGHEST_INDEX = 100.0
 
 MediumLike = Medium | str | float
+Axis = Sequence[float] | npt.NDArray[np.float64]
 Voxels = npt.NDArray[np.float32]
 
 
@@ -35,6 +36,8 @@ class Region:
     emission : radiance gained per metre, linear RGB, >= 0.
     scattering : scattering coefficient, linear RGB, 1/m, >= 0.
     anisotropy : mean cosine of scattering, in (-1, 1).
+    optic_axis : of a uniaxial crystal (such as calcite), its axis in object space; any length, kept as a unit vector.
+        With it light splits into two rays; without, the crystal is drawn as if it had its ordinary index only.
     """
 
     sdf: Voxels = field(repr=False)
@@ -43,6 +46,7 @@ class Region:
     emission: tuple[float, float, float] = (0.0, 0.0, 0.0)
     scattering: tuple[float, float, float] = (0.0, 0.0, 0.0)
     anisotropy: float = 0.0
+    optic_axis: tuple[float, float, float] | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "sdf", _voxels("sdf", self.sdf, channels=None))
@@ -50,6 +54,7 @@ class Region:
         object.__setattr__(self, "emission", _not_negative("emission", self.emission))
         object.__setattr__(self, "scattering", _not_negative("scattering", self.scattering))
         object.__setattr__(self, "anisotropy", _mean_cosine("anisotropy", self.anisotropy))
+        object.__setattr__(self, "optic_axis", _axis(self.optic_axis, self.medium))
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,6 +79,10 @@ class Volume:
         rest is absorbed), and roughness 0 to 1, for a `RefractiveVolume` with a BRDF.
     regions : bodies; the **first** whose distance is negative owns a point. With `delta_n` as well, that is the index
         inside the first body (a graded lens with a sharp surface), which then should be continued past the surface.
+    optic_axis : (Z, Y, X, 3) axis of the first body, a uniaxial crystal, from place to place in object space; of any
+        length but 0. It is interpolated, so neighbours must not point to opposite sides.
+    delta_n_e : (Z, Y, X) or (Z, Y, X, 3) extraordinary index of the first body minus `ambient_n`. Without it that
+        differs from the ordinary one as in the medium.
 
     Raises
     ------
@@ -91,6 +100,8 @@ class Volume:
     opaque: Voxels | None = None
     reflection: Voxels | None = None
     regions: tuple[Region, ...] = ()
+    optic_axis: Voxels | None = None
+    delta_n_e: Voxels | None = None
     shape: tuple[int, int, int] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -103,7 +114,10 @@ class Volume:
             values = getattr(self, name)
             if values is not None:
                 put(self, name, _voxels(name, values, channels, self.shape))
+        if self.optic_axis is not None:
+            put(self, "optic_axis", _unit_vectors("optic_axis", self.optic_axis))
         _check_ranges(self)
+        _check_crystal(self)
 
     @property
     def voxel_m(self) -> tuple[float, float, float]:
@@ -120,8 +134,13 @@ class Volume:
     @property
     def is_dispersive(self) -> bool:
         """Whether the index differs between the colour channels."""
-        by_channel = self.delta_n is not None and self.delta_n.ndim == 4
+        by_channel = any(n is not None and n.ndim == 4 for n in (self.delta_n, self.delta_n_e))
         return by_channel or any(r.medium.is_dispersive for r in self.regions)
+
+    @property
+    def has_crystals(self) -> bool:
+        """Whether light splits into two rays in any body."""
+        return self.optic_axis is not None or any(r.optic_axis is not None for r in self.regions)
 
     @classmethod
     def from_array(
@@ -181,10 +200,19 @@ class Volume:
 
     @classmethod
     def from_sdf(
-        cls, f: FieldFunction, medium: MediumLike, resolution: int, extent_m: Extent, ambient_n: float = 1.0
+        cls,
+        f: FieldFunction,
+        medium: MediumLike,
+        resolution: int,
+        extent_m: Extent,
+        ambient_n: float = 1.0,
+        optic_axis: Axis | None = None,
     ) -> Volume:
-        """One body from its signed distance `f(x, y, z)` in metres, negative inside; else as `from_function`."""
-        return cls.from_regions([(f, medium)], resolution, extent_m, ambient_n)
+        """One body from its signed distance `f(x, y, z)` in metres, negative inside; else as `from_function`.
+
+        optic_axis : of a crystal, see `Region`.
+        """
+        return cls.from_regions([(f, medium)], resolution, extent_m, ambient_n, [optic_axis])
 
     @classmethod
     def from_regions(
@@ -193,6 +221,7 @@ class Volume:
         resolution: int,
         extent_m: Extent,
         ambient_n: float = 1.0,
+        optic_axes: Sequence[Axis | None] = (),
     ) -> Volume:
         """Several bodies in one box; where they overlap the first has priority.
 
@@ -200,8 +229,12 @@ class Volume:
         ----------
         regions : up to four pairs of a signed distance (function of x, y, z, or array) and a medium.
         resolution, extent_m : as in `from_function`.
+        optic_axes : one for each body, or None for one that is not to be drawn as a crystal; see `Region`.
         """
         shape, extent = sampling(resolution, extent_m)
+        axes = list(optic_axes) or [None] * len(regions)
+        if len(axes) != len(regions):
+            raise SceneError("optic_axes", f"has {len(axes)} for {len(regions)} regions", "give one, or None, for each")
         bodies = []
         for i, pair in enumerate(regions):
             if not isinstance(pair, tuple | list) or len(pair) != 2:
@@ -209,7 +242,8 @@ class Volume:
             distance, medium = pair
             name = f"regions[{i}].sdf"
             values = sampled(name, distance, shape, extent) if callable(distance) else distance
-            bodies.append(Region(_voxels(name, values, None, shape), media.resolve(medium)))
+            sdf = _voxels(name, values, None, shape)
+            bodies.append(Region(sdf, media.resolve(medium), optic_axis=axes[i]))  # type: ignore[arg-type]
         return cls(extent, ambient_n, regions=tuple(bodies))  # type: ignore[arg-type]
 
     @classmethod
@@ -223,6 +257,7 @@ class Volume:
         ambient_n: float = 1.0,
         rounding_voxels: float = 0.0,
         progress: Callable[[float], None] | None = None,
+        optic_axis: Axis | None = None,
     ) -> tuple[Volume, tuple[float, float, float]]:
         """A body bounded by a triangle mesh, in cubic voxels around it (see `voxelise.signed_distance`).
 
@@ -234,6 +269,7 @@ class Volume:
         margin_voxels : empty voxels around the mesh on each side.
         rounding_voxels : standard deviation of a Gaussian that the distances are blurred by, 0 to 8: rounds off the
             facets of a coarse mesh, and its edges. A blurred distance never exceeds that to the blurred surface.
+        optic_axis : of a crystal, see `Region`.
 
         Returns
         -------
@@ -258,7 +294,8 @@ class Volume:
         if not (sdf < 0.0).any():
             raise SceneError("mesh", "encloses no voxel centre", "close it, thicken it, or use a finer resolution")
         x, y, z = (float(c) * voxel for c in count)
-        volume = cls((x, y, z), ambient_n, regions=(Region(sdf, media.resolve(medium)),))
+        body = Region(sdf, media.resolve(medium), optic_axis=optic_axis)  # type: ignore[arg-type]
+        volume = cls((x, y, z), ambient_n, regions=(body,))
         return volume, (float(centre[0]), float(centre[1]), float(centre[2]))
 
     def rasterised(self, by_channel: bool = True) -> Volume:
@@ -325,6 +362,8 @@ _CHANNELS: dict[str, int | None] = {
     "emission": 3,
     "opaque": 4,
     "reflection": 4,
+    "optic_axis": 3,
+    "delta_n_e": -1,
 }
 
 # Fields that add up with the constants of regions, in the order that `rasterised` names them in.
@@ -351,6 +390,52 @@ def _mean_cosine(name: str, value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not abs(np.float32(value)) < 1.0:
         raise SceneError(name, f"is {value!r}", "a mean cosine lies in (-1, 1)")
     return float(value)
+
+
+def _axis(values: Any, medium: Medium) -> tuple[float, float, float] | None:
+    """A unit vector, of a medium that has an axis."""
+    if values is None:
+        return None
+    try:
+        axis = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        axis = np.zeros(0)
+    length = np.linalg.norm(axis) if axis.shape == (3,) and np.isfinite(axis).all() else 0.0
+    if not length > 0.0:
+        raise SceneError("optic_axis", f"is {values!r}", "give three numbers that are not all 0")
+    if not medium.is_uniaxial:
+        raise SceneError(
+            "optic_axis",
+            f"is given, but {medium.name} has one index",
+            "use a crystal such as calcite or media.uniaxial",
+        )
+    x, y, z = axis / length
+    return float(x), float(y), float(z)
+
+
+def _unit_vectors(name: str, vectors: Voxels) -> Voxels:
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    bad = int(np.count_nonzero(length < 1e-6))
+    if bad:
+        raise SceneError(name, f"has {bad} vectors of length 0", "give it a direction everywhere")
+    return _voxels(name, vectors if np.abs(length - 1.0).max() < 1e-6 else vectors / length, 3)
+
+
+def _check_crystal(volume: Volume) -> None:
+    """What varies inside a crystal belongs to the first region."""
+    for name in ("optic_axis", "delta_n_e"):
+        if getattr(volume, name) is not None and not volume.regions:
+            raise SceneError(name, "is given without regions", "a crystal is a region with a sharp surface")
+    if volume.delta_n_e is None:
+        if volume.optic_axis is not None and not volume.regions[0].medium.is_uniaxial:
+            reason = f"is given, but {volume.regions[0].medium.name} has one index"
+            raise SceneError("optic_axis", reason, "use a crystal such as calcite, media.uniaxial, or give delta_n_e")
+        return
+    if volume.optic_axis is None and volume.regions[0].optic_axis is None:
+        raise SceneError("delta_n_e", "is given without an axis", "give optic_axis, or that of the first region")
+    lowest, highest = float(volume.delta_n_e.min()), float(volume.delta_n_e.max())
+    if lowest + volume.ambient_n <= 0.0 or highest + volume.ambient_n > HIGHEST_INDEX:
+        raise SceneError("delta_n_e", "makes an index that is not between 0 and 100")
 
 
 def _rounding(voxels: float) -> float:

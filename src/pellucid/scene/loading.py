@@ -121,7 +121,7 @@ def _volume(part: Any, folder: Path) -> RefractiveVolume:
     if "center_m" in part.model_fields_set:
         look["center_m"] = part.center_m
     if isinstance(part, schema.VolumeOfMesh):
-        names = {"resolution", "ambient_n", "rounding_voxels"} & part.model_fields_set
+        names = {"resolution", "ambient_n", "rounding_voxels", "optic_axis"} & part.model_fields_set
         settings = {name: getattr(part, name) for name in names}
         return RefractiveVolume.from_mesh(folder / part.mesh, substance(part.medium), **settings, **look)
     if isinstance(part, schema.VolumeOfArray):
@@ -179,6 +179,7 @@ def _stored_volume(part: schema.StoredVolume, folder: Path, look: dict[str, Any]
         words = region.given("medium")
         regions.append(Region(arrays.pop(f"region_{i}"), substance(region.medium), **words))
     fields = ("delta_n", "absorption", "scattering", "anisotropy", "emission", "opaque", "reflection")
+    fields += ("optic_axis", "delta_n_e")
     if set(arrays) - set(fields):
         raise AssetError(path, f"holds {sorted(set(arrays) - set(fields))}, not a volume", "save the scene again")
     if "ambient_n" in part.model_fields_set:
@@ -191,4 +192,11 @@ def substance(part: str | float | schema.ColouredMedium) -> Medium:
     """The medium that a scene file names."""
     if not isinstance(part, schema.ColouredMedium):
         return media.resolve(part)
-    return media.resolve(part.base).with_absorption(part.absorption_rgb_per_m, part.name or None)
+    colours = part.given("base", "base_e")
+    if "base_e" in part.model_fields_set:
+        if isinstance(part.base, str):
+            raise SceneError("medium.base_e", f"is given beside the medium {part.base!r}", "give two indices")
+        return media.uniaxial(float(part.base), part.base_e, **colours)
+    base = media.resolve(part.base)
+    other = colours.get("absorption_e_rgb_per_m")
+    return base.with_absorption(part.absorption_rgb_per_m, part.name or None, other)

@@ -111,6 +111,7 @@ class RefractiveVolume(SceneObject):
         ambient_n: float = 1.0,
         *,
         rounding_voxels: float = 0.0,
+        optic_axis: Sequence[float] | None = None,
         progress: Callable[[float], None] | None = None,
         **placement: Any,
     ) -> Self:
@@ -124,6 +125,7 @@ class RefractiveVolume(SceneObject):
         resolution : voxels along the longest edge of the box.
         ambient_n : index around the body.
         rounding_voxels : 0 to 8; rounds off facets and edges, for coarse meshes of curved things.
+        optic_axis : of a crystal, in the coordinates of the mesh; with it light splits into two rays.
         progress : called with the share of the voxels that is done, 0 to 1.
         placement : any other field of the class, such as ``boundary`` or ``position``.
 
@@ -146,10 +148,12 @@ class RefractiveVolume(SceneObject):
                 ambient_n=ambient_n,
                 rounding_voxels=rounding_voxels,
                 progress=progress,
+                optic_axis=optic_axis,
             )
         if recipe is not None and "center_m" not in options:
             made = {**recipe, "medium": substance, "resolution": resolution, "ambient_n": volume.ambient_n}
             made |= {"rounding_voxels": rounding_voxels} if rounding_voxels else {}
+            made |= {} if optic_axis is None else {"optic_axis": volume.regions[0].optic_axis}
             options["origin"] = Origin(made)
         return cls(volume, **({"center_m": center} | options))
 
@@ -212,13 +216,17 @@ class RefractiveVolume(SceneObject):
         resolution: int,
         extent_m: Extent,
         ambient_n: float = 1.0,
+        optic_axis: Sequence[float] | None = None,
         **placement: Any,
     ) -> Self:
-        """A body given by its signed distance ``f(x, y, z)`` in metres, negative inside; see ``Volume.from_sdf``."""
+        """A body given by its signed distance ``f(x, y, z)`` in metres, negative inside; see ``Volume.from_sdf``.
+
+        optic_axis : of a crystal; with it light splits into two rays.
+        """
         from pellucid.fields.volume import Volume
 
         options = _checked(placement)
-        return cls(Volume.from_sdf(f, medium, resolution, extent_m, ambient_n), **options)
+        return cls(Volume.from_sdf(f, medium, resolution, extent_m, ambient_n, optic_axis), **options)
 
     @classmethod
     def from_regions(
@@ -227,13 +235,17 @@ class RefractiveVolume(SceneObject):
         resolution: int,
         extent_m: Extent,
         ambient_n: float = 1.0,
+        optic_axes: Sequence[Sequence[float] | None] = (),
         **placement: Any,
     ) -> Self:
-        """Up to four bodies as (signed distance, medium); the first that holds a point owns it."""
+        """Up to four bodies as (signed distance, medium); the first that holds a point owns it.
+
+        optic_axes : one for each body, or None for one that is not to be drawn as a crystal.
+        """
         from pellucid.fields.volume import Volume
 
         options = _checked(placement)
-        return cls(Volume.from_regions(list(regions), resolution, extent_m, ambient_n), **options)
+        return cls(Volume.from_regions(list(regions), resolution, extent_m, ambient_n, optic_axes), **options)
 
 
 DEFAULTS = tuple(name for name in RefractiveVolume.__dataclass_fields__ if name not in ("volume", "origin"))

@@ -101,13 +101,23 @@ def describe_medium(medium: Any, where: str) -> str | float | dict[str, Any]:
     if not found.is_dispersive:
         base: str | float = found.n_d
     else:
-        named = [name for name in media.names() if media.get(name).formula == found.formula]
+        named = [name for name in media.names() if _same_indices(media.get(name), found)]
         if not named:
             raise SceneError(where, f"{found.name!r} has a formula of its own", "use a medium of pellucid.media")
         base = named[0]
-    if clear and not isinstance(base, str):
+    if clear and not isinstance(base, str) and not found.is_uniaxial:
         return base
-    return {"base": base, "absorption_rgb_per_m": list(found.absorption_per_m), "name": found.name}
+    described = {"base": base, "absorption_rgb_per_m": list(found.absorption_per_m), "name": found.name}
+    if found.extraordinary is not None:
+        described["absorption_e_rgb_per_m"] = list(found.extraordinary.absorption_per_m)
+        described |= {} if isinstance(base, str) else {"base_e": found.extraordinary.n_d}
+    return described
+
+
+def _same_indices(a: Medium, b: Medium) -> bool:
+    rays = a.extraordinary, b.extraordinary
+    both = None not in rays and rays[0].formula == rays[1].formula  # type: ignore[union-attr]
+    return a.formula == b.formula and (both or rays == (None, None))
 
 
 def _same(medium: Medium, name: str) -> bool:
@@ -178,11 +188,12 @@ def _volume(thing: RefractiveVolume, label: str, where: str, beside: Sidecars) -
         return source if "mesh" in source else source | _stated(thing, ("center_m",))
     volume = thing.volume
     names = ("delta_n", "absorption", "scattering", "anisotropy", "emission", "opaque", "reflection")
+    names += ("optic_axis", "delta_n_e")
     arrays = {name: getattr(volume, name) for name in names if getattr(volume, name) is not None}
     regions = []
     for i, region in enumerate(volume.regions):
         arrays[f"region_{i}"] = region.sdf
-        matter = _stated(region, ("name", "emission", "scattering", "anisotropy"))
+        matter = _stated(region, ("name", "emission", "scattering", "anisotropy", "optic_axis"))
         regions.append({"medium": describe_medium(region.medium, where), **matter})
     source = {"volume": beside.arrays(label, arrays), "extent_m": [float(e) for e in volume.extent_m]}
     source |= {"ambient_n": float(volume.ambient_n), **_stated(thing, ("center_m",))}

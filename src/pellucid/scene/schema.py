@@ -166,6 +166,8 @@ class ColouredMedium(Model):
 
     base: StrictStr | Number
     absorption_rgb_per_m: Triple
+    absorption_e_rgb_per_m: Triple = UNSET
+    base_e: Number = UNSET
     name: StrictStr = UNSET
 
 
@@ -192,6 +194,7 @@ class VolumeOfMesh(VolumeBase):
     resolution: StrictInt = UNSET
     ambient_n: Number = UNSET
     rounding_voxels: Number = UNSET
+    optic_axis: Triple = UNSET
 
 
 class VolumeOfArray(VolumeBase):
@@ -213,6 +216,7 @@ class RegionFile(Model):
     emission: Triple = UNSET
     scattering: Triple = UNSET
     anisotropy: Number = UNSET
+    optic_axis: Triple = UNSET
 
 
 class StoredVolume(VolumeBase):

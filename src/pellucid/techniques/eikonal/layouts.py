@@ -46,6 +46,15 @@ VolumeParams = struct(
     ]
 )
 
+# Of the crystals among the regions of a volume, at one wavelength.
+CrystalParams = struct(
+    [
+        ("axis", ("vec4f", MAX_REGIONS)),  # unit, object space; w: 1 for a crystal, 0 for an isotropic region
+        ("absorption_e", ("vec4f", MAX_REGIONS)),  # of the extraordinary ray across the axis, 1/m of the world
+        ("n_e", "vec4f"),
+    ]
+)
+
 # The rectangle of the picture that one draw covers, and what its colours are worth (wavelengths.py);
 # the first draw starts every pixel anew.
 DrawParams = struct([("corner", "vec2u"), ("size", "vec2u"), ("weights", "mat3x3f"), ("first", "u32")])
