@@ -77,6 +77,7 @@ def trace(
     directions: np.ndarray,
     quality: Quality | None = None,
     channel: int | None = None,
+    mode: str | None = None,
 ) -> Rays:
     """Follow rays through one volume with the shader that draws it.
 
@@ -88,6 +89,8 @@ def trace(
     origins, directions : (N, 3) or (3,), metres of the world; directions need not be unit.
     quality : overrides the volume's own.
     channel : 0, 1 or 2 for the index of red, green or blue; the index at 587.56 nm when omitted.
+    mode : "ordinary" or "extraordinary": the kind of ray that is followed in every crystal. Each entry into a crystal
+        then counts with its share of unpolarised light. When omitted, crystals are traced by their ordinary index.
 
     Returns
     -------
@@ -103,7 +106,7 @@ def trace(
 
     if isinstance(volume, Volume):
         volume = RefractiveVolume(volume)
-    return trace_on(default_device(), volume, origins, directions, quality, channel)
+    return trace_on(default_device(), volume, origins, directions, quality, channel, mode)
 
 
 def probe(module: str, function: str, *arrays: Any) -> np.ndarray:

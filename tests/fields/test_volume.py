@@ -247,3 +247,49 @@ def test_rounding_out_of_range_is_refused(voxels: object) -> None:
 def test_an_index_that_no_matter_has_is_refused() -> None:
     with pytest.raises(SceneError, match="no matter"):
         Volume.from_array(np.full((4, 4, 4), 1e30), 0.1)
+
+
+# ---- crystals -----------------------------------------------------------------------------------------------
+
+
+def cube(axis=None, medium="calcite"):
+    return Volume.from_sdf(lambda x, y, z: np.abs(x) - 0.02, medium, 8, 0.1, optic_axis=axis)
+
+
+def test_an_optic_axis_is_kept_as_a_unit_vector():
+    assert cube().regions[0].optic_axis is None and not cube().has_crystals
+    body = cube((0, 3, 4))
+    assert body.regions[0].optic_axis == pytest.approx((0.0, 0.6, 0.8)) and body.has_crystals
+    bodies = Volume.from_regions(
+        [(lambda x, y, z: x, "calcite"), (lambda x, y, z: -x, "N-BK7")], 8, 0.1, optic_axes=[(2, 0, 0), None]
+    )
+    assert [r.optic_axis for r in bodies.regions] == [(1.0, 0.0, 0.0), None]
+    field = np.zeros((8, 8, 8, 3), np.float32)
+    field[..., 1] = 2.0
+    np.testing.assert_allclose(cube().replace(optic_axis=field).optic_axis, field / 2.0)
+
+
+@pytest.mark.parametrize("axis", [(0, 0, 0), (1, 2), (np.nan, 0, 1), "up"])
+def test_what_is_no_axis_is_refused(axis):
+    with pytest.raises(SceneError, match="optic_axis"):
+        cube(axis)
+
+
+def test_crystals_that_cannot_be_are_refused():
+    field = np.ones((8, 8, 8, 3), np.float32)
+    index = np.full((8, 8, 8), 0.5, np.float32)
+    with pytest.raises(SceneError, match="N-BK7 has one index"):
+        cube((0, 1, 0), "N-BK7")
+    with pytest.raises(SceneError, match="N-BK7 has one index"):
+        cube(medium="N-BK7").replace(optic_axis=field)
+    with pytest.raises(SceneError, match="length 0"):
+        cube().replace(optic_axis=0.0 * field)
+    with pytest.raises(SceneError, match="without regions"):
+        Volume.from_array(1.5 + 0 * index, 0.1).replace(optic_axis=field)
+    with pytest.raises(SceneError, match="without an axis"):
+        cube().replace(delta_n_e=index)
+    with pytest.raises(SceneError, match="between 0 and 100"):
+        cube((0, 1, 0)).replace(delta_n_e=-3.0 * index)
+    with pytest.raises(SceneError, match="2 for 1 regions"):
+        Volume.from_regions([(lambda x, y, z: x, "calcite")], 8, 0.1, optic_axes=[None, None])
+    assert cube(medium="N-BK7").replace(optic_axis=field, delta_n_e=index).has_crystals

@@ -404,3 +404,20 @@ def test_a_read_only_file_system_is_an_error_in_words(tmp_path: Path, monkeypatc
 )
 def test_toml_that_is_written_is_read_the_same(value: Any) -> None:
     assert tomllib.loads(f"x = {_toml_value(value)}") == {"x": value}
+
+
+def test_crystals_come_back_with_their_axes(inputs: Path, tmp_path: Path) -> None:
+    from pellucid.fields.volume import Region, Volume
+
+    sdf = np.full((4, 5, 6), -1.0, np.float32)
+    coloured = media.get("quartz").with_absorption((1.0, 2.0, 3.0), "tinted", (4.0, 5.0, 6.0))
+    substances = (media.get("calcite"), coloured, media.uniaxial(1.7, 1.5, (1.0, 0.0, 0.0), name="two"))
+    regions = tuple(Region(sdf, medium, optic_axis=(0.0, 0.6, 0.8)) for medium in substances)  # type: ignore[arg-type]
+    axis = np.broadcast_to(np.float32([0.0, 0.0, 1.0]), (4, 5, 6, 3))
+    volume = Volume((0.6, 0.5, 0.4), regions=regions, optic_axis=axis, delta_n_e=sdf + 1.4)  # type: ignore[arg-type]
+    mesh = RefractiveVolume.from_mesh(inputs / "box.ply", "calcite", 16, optic_axis=(0, 2, 0))
+    scene = Scene(camera=Camera(position=(0.0, 0.2, 1.0)), objects=[RefractiveVolume(volume), mesh])
+    save_scene(scene, tmp_path / "crystals.json")
+    again = load_scene(tmp_path / "crystals.json")
+    assert same(again, scene)
+    assert again.objects[1].volume.regions[0].optic_axis == (0.0, 1.0, 0.0)  # type: ignore[union-attr]

@@ -400,7 +400,7 @@ def _axis(values: Any, medium: Medium) -> tuple[float, float, float] | None:
         axis = np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError):
         axis = np.zeros(0)
-    length = np.linalg.norm(axis) if axis.shape == (3,) and np.isfinite(axis).all() else 0.0
+    length = float(np.linalg.norm(axis)) if axis.shape == (3,) and np.isfinite(axis).all() else 0.0
     if not length > 0.0:
         raise SceneError("optic_axis", f"is {values!r}", "give three numbers that are not all 0")
     if not medium.is_uniaxial:
@@ -409,7 +409,7 @@ def _axis(values: Any, medium: Medium) -> tuple[float, float, float] | None:
             f"is given, but {medium.name} has one index",
             "use a crystal such as calcite or media.uniaxial",
         )
-    x, y, z = axis / length
+    x, y, z = axis if abs(length - 1.0) < 1e-12 else axis / length  # what is a unit vector stays what it is
     return float(x), float(y), float(z)
 
 

@@ -104,7 +104,7 @@ def describe_medium(medium: Any, where: str) -> str | float | dict[str, Any]:
         named = [name for name in media.names() if _same_indices(media.get(name), found)]
         if not named:
             raise SceneError(where, f"{found.name!r} has a formula of its own", "use a medium of pellucid.media")
-        base = named[0]
+        base = next((name for name in named if media.get(name).source == found.source), named[0])
     if clear and not isinstance(base, str) and not found.is_uniaxial:
         return base
     described = {"base": base, "absorption_rgb_per_m": list(found.absorption_per_m), "name": found.name}

@@ -131,7 +131,8 @@ Generation = struct([("index", "u32")])
 # Where a body's proxy stands, for rays that look for the next one.
 BodyBox = struct([("object_from_world", "mat4x4f"), ("center", "vec3f"), ("scale", "f32"), ("half", "vec3f")])
 
-TraceParams = struct([("count", "u32")])
+# mode: of rays through crystals, 0 ordinary, 1 extraordinary.
+TraceParams = struct([("count", "u32"), ("mode", "u32")])
 
 # One ray of `pl.trace`, object space. Results overwrite it.
 TraceRay = struct(

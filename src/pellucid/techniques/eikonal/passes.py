@@ -25,6 +25,7 @@ from pellucid.techniques.eikonal.resources import (
     LOOKS_PER_PIXEL,
     VolumeTextures,
     constants_of,
+    crystal_constants,
     parameters,
     scale_of,
     scatters,
@@ -237,6 +238,9 @@ class EikonalTechnique:
             self._brdfs.write(record, body.objects[0])
             record["body"], record["body_count"] = self.bodies.index(body), len(self.bodies)
             self.device.write(uniform, record.reshape(1))
+            if body.prepared.crystals is not None:
+                crystals = body.prepared.crystals.record(channel)
+                self.device.write(body.textures.channels[channel]["crystals"], crystals.reshape(1))
 
     def draw(
         self, encoder: Any, targets: Targets, camera: Camera, surroundings: Surroundings, timer: Any = None
@@ -351,6 +355,8 @@ class EikonalTechnique:
         if prepared.sharp:
             constants["GRADED"] = float(prepared.graded)
         name = "view_sharp" if prepared.sharp else "view_smooth"
+        if prepared.crystals is not None:
+            name, constants = "view_crystal", {**constants, **crystal_constants(prepared)}
         return self._kernel(name, constants)
 
     def _kernel(self, name: str, constants: dict[str, float]) -> ComputeKernel:

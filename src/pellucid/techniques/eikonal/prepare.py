@@ -15,6 +15,7 @@ from pellucid.fields.smoothing import gaussian
 from pellucid.fields.volume import Region, Volume
 from pellucid.optics.dispersion import LAMBDA_D_NM, RGB_LAMBDA_NM
 from pellucid.spectra import stratified
+from pellucid.techniques.eikonal.crystals import Crystals, crystals_of
 
 # Smallest jump of the index between neighbours that is taken for a surface: what a smaller one would reflect at normal
 # incidence is below 3e-4, and graded lenses stay under it from 40 voxels of diameter on.
@@ -70,6 +71,7 @@ class Prepared:
     boundary_on_per_m: float
     boundary_off_per_m: float
     regions: tuple[Region, ...] = ()  # of a sharp volume, the first owns a point
+    crystals: Crystals | None = None  # of a sharp volume
 
     @property
     def dispersive(self) -> bool:
@@ -139,6 +141,8 @@ def _prepare_sharp(volume: Volume, gradient: str, method: str, lambdas_nm: Seque
         Channel(forces[id(delta)], delta, indices_at(regions, lambda_nm), lambda_nm)
         for delta, lambda_nm in zip(deltas, lambdas_nm, strict=True)
     ]
+    n_e = volume.delta_n_e
+    deltas_e = [None] * len(lambdas_nm) if n_e is None else _fields_at(n_e, lambdas_nm)
     voxel = min(volume.voxel_m)
     distance = np.stack([r.sdf / voxel for r in regions], axis=-1) if regions else None
     return Prepared(
@@ -161,6 +165,7 @@ def _prepare_sharp(volume: Volume, gradient: str, method: str, lambdas_nm: Seque
         boundary_on_per_m=np.inf,
         boundary_off_per_m=0.0,
         regions=regions,
+        crystals=crystals_of(volume, lambdas_nm, deltas, deltas_e),
     )
 
 
@@ -226,7 +231,7 @@ def _closed_at_box(volume: Volume) -> Volume:
     for region in volume.regions:
         distance = np.pad(region.sdf, BOX_PAD, mode="edge")
         regions.append(replace(region, sdf=np.maximum(distance, outside_box).astype(np.float32)))
-    fields = ("delta_n", "absorption", "scattering", "anisotropy", "emission", "reflection")
+    fields = ("delta_n", "absorption", "scattering", "anisotropy", "emission", "reflection", "optic_axis", "delta_n_e")
     margin = np.array(volume.voxel_m) * 2 * BOX_PAD
     return volume.replace(
         extent_m=tuple(np.array(volume.extent_m) + margin),

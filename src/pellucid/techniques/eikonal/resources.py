@@ -9,6 +9,7 @@ import numpy as np
 
 from pellucid.gpu import Device
 from pellucid.scene.quality import Quality
+from pellucid.techniques.eikonal.crystals import Crystals
 from pellucid.techniques.eikonal.layouts import VolumeParams, blank_params
 from pellucid.techniques.eikonal.prepare import Prepared
 from pellucid.techniques.eikonal.proxies import Box, whole_box
@@ -50,6 +51,14 @@ def upload(device: Device, prepared: Prepared) -> VolumeTextures:
         size += data.nbytes
         return device.texture(data, format=name, dimension="3d", label=label)
 
+    def crystal_bindings(crystals: Crystals, channel: int) -> dict[str, Any]:
+        field = None if crystals.fields is None else crystals.fields[channel]
+        record = crystals.record(channel).reshape(1)
+        return {
+            "crystals": device.buffer(record, "uniform", "crystals"),
+            "axis_field": texture(field, 4, False, "optic axis"),
+        }
+
     count = prepared.distance.shape[-1] if prepared.distance is not None else 1
     shared["distance_field"] = texture(prepared.distance, 1 if count == 1 else 4, False, "distance")
     shared["absorption_field"] = texture(prepared.absorption, 4, True, "absorption")
@@ -74,6 +83,8 @@ def upload(device: Device, prepared: Prepared) -> VolumeTextures:
             made[key] = ({**shared, **own}, force_scale, index_scale)
         rows.append(made[key])
     bindings, force_scales, index_scales = zip(*rows, strict=True)
+    if prepared.crystals is not None:
+        bindings = tuple({**row, **crystal_bindings(prepared.crystals, k)} for k, row in enumerate(bindings))
     return VolumeTextures(bindings, force_scales, index_scales, size)
 
 
@@ -114,6 +125,15 @@ def constants_of(prepared: Prepared, quality: Quality) -> dict[str, float]:
     }
 
 
+def crystal_constants(prepared: Prepared) -> dict[str, float]:
+    """The further constants of the kernels for crystals."""
+    return {"CRYSTALS": 1.0, "VARIES": float(_varies(prepared))}
+
+
+def _varies(prepared: Prepared) -> bool:
+    return prepared.crystals is not None and prepared.crystals.fields is not None
+
+
 def scale_of(world_from_object: np.ndarray) -> float:
     """World metres per object metre of a placement (4, 4), whose scale is uniform."""
     return float(np.cbrt(np.linalg.det(world_from_object[:3, :3])))
@@ -133,7 +153,7 @@ def parameters(
     world_from_object : (4, 4) float64, metres. box : the proxy; all of the volume when omitted.
     """
     out = blank_params()
-    curved = not prepared.sharp or prepared.graded
+    curved = not prepared.sharp or prepared.graded or _varies(prepared)
     row = prepared.channels[channel]
     out["world_from_object"] = np.asarray(world_from_object, np.float64).T
     out["object_from_world"] = np.linalg.inv(np.asarray(world_from_object, np.float64)).T

@@ -13,8 +13,16 @@ from pellucid.scene.quality import Quality
 from pellucid.scene.refractive_volume import RefractiveVolume
 from pellucid.techniques.eikonal.layouts import TraceParams, TraceRay
 from pellucid.techniques.eikonal.prepare import Prepared, prepare
-from pellucid.techniques.eikonal.resources import VolumeTextures, constants_of, parameters, scale_of, upload
+from pellucid.techniques.eikonal.resources import (
+    VolumeTextures,
+    constants_of,
+    crystal_constants,
+    parameters,
+    scale_of,
+    upload,
+)
 
+MODES = ("ordinary", "extraordinary")
 STATUS = ("missed", "left", "opaque", "exhausted")
 
 
@@ -50,11 +58,16 @@ def trace(
     directions: np.ndarray,
     quality: Quality | None = None,
     channel: int | None = None,
+    mode: str | None = None,
 ) -> Rays:
     """Follow rays through one volume. See `pellucid.trace`."""
     x, d = _checked_rays(origins, directions)
+    if mode not in (None, *MODES):
+        raise SceneError("trace.mode", f"is {mode!r}", "use 'ordinary' or 'extraordinary', or leave it out")
     quality = quality or volume.quality
     prepared, textures = _resident(device, volume, quality, dispersion=channel is not None)
+    if mode is not None and prepared.crystals is None:
+        raise SceneError("trace.mode", "is given, but no region has an optic axis", "leave it out, or give an axis")
     row = channel if channel is not None and prepared.dispersive else 0
     world = volume.object_to_world()
     scale = scale_of(world)
@@ -62,7 +75,7 @@ def trace(
     inverse = np.linalg.inv(world)
     x_os = x @ inverse[:3, :3].T + inverse[:3, 3]
     d_os = d @ (inverse[:3, :3].T * scale)
-    out = _run(device, prepared, quality, params, textures.channels[row], x_os, d_os)
+    out = _run(device, prepared, quality, params, textures.channels[row], x_os, d_os, mode)
     # The deviation comes back apart from what it deviates from, so that 32 bits carry deflections of 1e-6.
     p = _base(out, d_os, prepared.ambient_n) + out["momentum"].astype(np.float64)
     index = np.linalg.norm(p, axis=1)
@@ -120,15 +133,15 @@ def _resident(
     return cached[2], cached[3]
 
 
-def _kernel(device: Device, prepared: Prepared, quality: Quality) -> ComputeKernel:
-    constants = {
-        "SHARP": float(prepared.sharp),
-        "GRADED": float(prepared.graded),
-        **constants_of(prepared, quality),
-    }
-    key = ("trace", *constants.values())
+def _kernel(device: Device, prepared: Prepared, quality: Quality, mode: str | None) -> ComputeKernel:
+    constants = {"GRADED": float(prepared.graded), **constants_of(prepared, quality)}
+    if mode is None:
+        name, constants = "trace", {"SHARP": float(prepared.sharp), **constants}
+    else:
+        name, constants = "trace_crystal", {**constants, **crystal_constants(prepared)}
+    key = (name, *constants.values())
     if key not in device.cache:
-        device.cache[key] = ComputeKernel(device, "techniques/eikonal/shaders/trace", constants=constants)
+        device.cache[key] = ComputeKernel(device, f"techniques/eikonal/shaders/{name}", constants=constants)
     return device.cache[key]
 
 
@@ -140,6 +153,7 @@ def _run(
     textures: dict[str, Any],
     x: np.ndarray,
     d: np.ndarray,
+    mode: str | None,
 ) -> np.ndarray:
     rays = np.zeros(len(x), TraceRay)
     rays["position"], rays["momentum"], rays["transmittance"] = x, d, 1.0
@@ -147,9 +161,10 @@ def _run(
         return rays
     head = np.zeros((), TraceParams)
     head["count"] = len(x)
+    head["mode"] = MODES.index(mode or "ordinary")
     buffer = device.buffer(rays, "storage", "trace rays")
     groups = -(-len(x) // 64)
-    _kernel(device, prepared, quality).run(
+    _kernel(device, prepared, quality, mode).run(
         (min(groups, 32768), -(-groups // 32768), 1),
         {
             **textures,

@@ -46,12 +46,17 @@ def at_sample(prepared: Prepared, sample: int) -> Prepared:
     """
     if not is_spectral(prepared) or not prepared.shares_fields:
         return prepared
+    crystals = prepared.crystals
+    if crystals is not None and crystals.fields is not None:
+        return prepared
     lambdas_nm = stratified(len(prepared.channels), sample)
     moved = (
         replace(channel, region_n=indices_at(prepared.regions, float(lambda_nm)), lambda_nm=float(lambda_nm))
         for channel, lambda_nm in zip(prepared.channels, lambdas_nm, strict=True)
     )
-    return replace(prepared, channels=tuple(moved))
+    if crystals is not None:
+        crystals = crystals.at(prepared.regions, lambdas_nm)
+    return replace(prepared, channels=tuple(moved), crystals=crystals)
 
 
 def common_draws(volumes: Sequence[Prepared]) -> list[tuple[tuple[int, ...], np.ndarray]]:

@@ -65,7 +65,7 @@ fn gather_straight(walk: ptr<function, Walk>, start: vec3f, length_os: f32) {
     if (ABSORBS || EMITS || SCATTERS) {
         gather_fields(walk, start, length_os);
     } else if ((*walk).region < AMBIENT) {
-        gather(walk, volume.region_absorption[(*walk).region].xyz, volume.region_emission[(*walk).region].xyz, n, length_os);
+        gather(walk, region_absorption_at((*walk).region), volume.region_emission[(*walk).region].xyz, n, length_os);
     } else {
         (*walk).optical_path += n * length_os * volume.scale;
     }

@@ -3,6 +3,16 @@
 //!import techniques/eikonal/shaders/fields
 //!import techniques/eikonal/shaders/walk
 
+override CRYSTALS: bool = false;       // absorption depends on the kind of ray: a kernel of crystals sets that of its own
+
+var<private> ray_absorption: vec3f;
+
+// Absorption of a region, 1/world metre.
+fn region_absorption_at(region: u32) -> vec3f {
+    if (CRYSTALS) { return ray_absorption; }
+    return volume.region_absorption[region].xyz;
+}
+
 struct Matter {
     extinction: vec3f,   // absorption + scattering, 1/world metre
     emission: vec3f,     // radiance per world metre
@@ -13,7 +23,7 @@ struct Matter {
 fn matter_at(x: vec3f, region: u32) -> Matter {
     let inside = region < AMBIENT;
     let owner = min(region, AMBIENT - 1u);
-    let absorption = absorption_at(x) + select(vec3f(0.0), volume.region_absorption[owner].xyz, inside);
+    let absorption = absorption_at(x) + select(vec3f(0.0), region_absorption_at(owner), inside);
     let emission = emission_at(x) + select(vec3f(0.0), volume.region_emission[owner].xyz, inside);
     let scattering = mixed(scattering_at(x), select(vec4f(0.0), volume.region_scattering[owner], inside));
     return Matter(absorption + scattering.rgb, emission, scattering);
