@@ -2,6 +2,7 @@
 
 //!import optics/crystal
 //!import techniques/eikonal/shaders/interfaces
+//!import techniques/eikonal/shaders/matter
 //!struct CrystalParams from techniques.eikonal.layouts
 
 override VARIES: bool = false;     // axis or indices of the first region change from place to place
