@@ -24,6 +24,7 @@ from pellucid.scene.quality import Quality
 from pellucid.scene.refractive_volume import RefractiveVolume
 from pellucid.scene.scene import Scene
 
+CRYSTAL = ("optic_axis", "delta_n_e")
 LIGHTS: dict[str, type[Light]] = {"directional": DirectionalLight, "point": PointLight, "area": AreaLight}
 MESHES: dict[str, Callable[..., Mesh]] = {
     "plane": Mesh.plane,
@@ -178,8 +179,7 @@ def _stored_volume(part: schema.StoredVolume, folder: Path, look: dict[str, Any]
             raise AssetError(path, f"has no array 'region_{i}'", "it belongs to another scene file")
         words = region.given("medium")
         regions.append(Region(arrays.pop(f"region_{i}"), substance(region.medium), **words))
-    fields = ("delta_n", "absorption", "scattering", "anisotropy", "emission", "opaque", "reflection")
-    fields += ("optic_axis", "delta_n_e")
+    fields = ("delta_n", "absorption", "scattering", "anisotropy", "emission", "opaque", "reflection", *CRYSTAL)
     if set(arrays) - set(fields):
         raise AssetError(path, f"holds {sorted(set(arrays) - set(fields))}, not a volume", "save the scene again")
     if "ambient_n" in part.model_fields_set:

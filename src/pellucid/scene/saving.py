@@ -21,6 +21,7 @@ from pellucid.scene.mesh import Mesh
 from pellucid.scene.refractive_volume import RefractiveVolume
 from pellucid.scene.scene import Scene
 
+CRYSTAL = ("optic_axis", "delta_n_e")
 LIGHT_TYPES: dict[type, str] = {DirectionalLight: "directional", PointLight: "point", AreaLight: "area"}
 LOOKS: dict[type, tuple[str, ...]] = {
     Mesh: (
@@ -187,8 +188,7 @@ def _volume(thing: RefractiveVolume, label: str, where: str, beside: Sidecars) -
         source |= {name: beside.relative(source[name]) for name in files if name in source}
         return source if "mesh" in source else source | _stated(thing, ("center_m",))
     volume = thing.volume
-    names = ("delta_n", "absorption", "scattering", "anisotropy", "emission", "opaque", "reflection")
-    names += ("optic_axis", "delta_n_e")
+    names = ("delta_n", "absorption", "scattering", "anisotropy", "emission", "opaque", "reflection", *CRYSTAL)
     arrays = {name: getattr(volume, name) for name in names if getattr(volume, name) is not None}
     regions = []
     for i, region in enumerate(volume.regions):
