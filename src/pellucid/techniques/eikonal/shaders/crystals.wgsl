@@ -8,7 +8,7 @@
 override VARIES: bool = false;     // axis or indices of the first region change from place to place
 
 @group(0) @binding(18) var axis_field: texture_3d<f32>;   // of the first region, where it varies: axis, n_e - ambient_n
-@group(0) @binding(19) var<uniform> crystals: CrystalParams;
+@group(0) @binding(28) var<uniform> crystals: CrystalParams;
 
 const ORDINARY = 0u;               // also the one mode of an isotropic medium, in which light is unpolarised
 const EXTRAORDINARY = 1u;

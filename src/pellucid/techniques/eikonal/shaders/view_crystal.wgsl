@@ -16,13 +16,15 @@ struct Branch {
 
 @compute @workgroup_size(64)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let pixel = pixel_of(group.xy, lane);
-    if (any(pixel >= draw.size)) { return; }
-    let ray = camera_ray(vec2f(draw.corner + pixel) + 0.5);
-    let entry = enter(pixel, ray);
-    var seen = Seen(vec3f(0.0), 0.0, false);
-    if (entry.meets) { seen = look_into(entry); }
-    keep(pixel, ray, seen);
+    var entry = first_ray(group.xy, lane);
+    if (!entry.exists) { return; }
+    while (entry.exists) {
+        var seen = Seen(vec3f(0.0), 0.0, false);
+        if (entry.meets) { seen = look_into(entry); }
+        keep(entry, seen);
+        entry = next_ray();
+    }
+    finish_pixel();
 }
 
 fn look_into(entry: ViewRay) -> Seen {
@@ -33,13 +35,13 @@ fn look_into(entry: ViewRay) -> Seen {
     var waiting = 0u;
     var crossing = Crossing();
     var radiance = vec3f(0.0);
-    var weight = vec3f(1.0);
+    var weight = entry.weight;
     var generation = 0u;
     var first = select(-1.0, entry.distance, walk.region < AMBIENT);
     // A camera inside a crystal looks along both of its rays.
     let around = crystal_at(walk.region, walk.x, entry.d);
     if (around.splits) {
-        weight = vec3f(0.5);
+        weight *= 0.5;
         let other = Wave(momentum_of_ray(entry.d, around.axis, around.n_o, around.n_e), EXTRAORDINARY);
         stack[0] = Branch(walk.x, other, weight, walk.region, walk.signs, 0u);
         waiting = 1u;
