@@ -120,6 +120,7 @@ def constants_of(prepared: Prepared, quality: Quality) -> dict[str, float]:
         "ABSORBS": float(prepared.absorption is not None or (prepared.graded and np.any(prepared.region_absorption))),
         "EMITS": float(prepared.emission is not None or (prepared.graded and np.any(prepared.region_emission))),
         "SCATTERS": float(scatters(prepared)),
+        "SCATTER_VARIES": float(prepared.scattering is not None),
         "BLOCKS": float(prepared.opaque is not None),
         "REFLECTS": float(prepared.reflection is not None),
     }

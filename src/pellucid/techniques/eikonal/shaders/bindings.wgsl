@@ -7,6 +7,7 @@
 override ABSORBS: bool = true;
 override EMITS: bool = true;
 override SCATTERS: bool = true;    // anything in the volume scatters light
+override SCATTER_VARIES: bool = true;   // differently from place to place, not only from region to region
 override BLOCKS: bool = true;      // has opaque voxels
 
 override REFLECTS: bool = false;   // has reflection data

@@ -33,7 +33,7 @@ fn emission_at(x: vec3f) -> vec3f {
 
 // rgb: scattering, 1/world metre; w: mean cosine of it.
 fn scattering_at(x: vec3f) -> vec4f {
-    if (!SCATTERS) { return vec4f(0.0); }
+    if (!SCATTER_VARIES) { return vec4f(0.0); }
     return textureSampleLevel(scattering_field, volume_sampler, texture_position(x), 0.0);
 }
 

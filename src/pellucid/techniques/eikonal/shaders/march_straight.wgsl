@@ -95,6 +95,7 @@ fn gather_fields(walk: ptr<function, Walk>, start: vec3f, length_os: f32) {
 
 // Radius around x in which matter stays the same, object metres; see `force_field`.
 fn matter_radius_at(x: vec3f) -> f32 {
+    if (!(ABSORBS || EMITS || SCATTER_VARIES)) { return 0.0; }
     let here = force_at(x);
     if (GRADED) { return here.radius; }
     return here.force.x * volume.voxel;

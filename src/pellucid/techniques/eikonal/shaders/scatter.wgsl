@@ -1,4 +1,4 @@
-// Light that matter scatters once into a viewing ray [tevs2007, 3.2.3].
+// Light that matter scatters once into a viewing ray [tevs2007, eq. 5.5].
 
 //!import optics/phase
 //!import techniques/eikonal/shaders/matter
