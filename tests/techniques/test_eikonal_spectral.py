@@ -171,3 +171,23 @@ def test_fields_of_too_many_wavelengths_say_what_to_do():
     with pytest.raises(pl.SceneError, match=r"spectral.*use up to 13") as caught:
         prepare(pl.Volume.from_array(n, 0.1), "smooth", spectral=32)
     assert "GiB" in str(caught.value)
+
+
+def test_light_through_many_wavelengths_loses_and_lands_as_much_of_each_colour(device):
+    """Coloured glass under a coloured lamp: absorbed, let through and landed on a floor, 8 wavelengths against 3."""
+    glass = pl.media.get("N-SF11").with_absorption((5.0, 30.0, 60.0))
+    ball = pl.Volume.from_sdf(shapes.sphere(0.03), glass, 32, 0.08)
+    lamp = pl.DirectionalLight((0.0, -1.0, 0.1), (1.0, 0.8, 0.5), 2.0)
+    floor = pl.Mesh.plane(0.6, position=(0.0, -0.05, 0.0))
+    found = {}
+    for spectral in (0, 8):
+        item = pl.RefractiveVolume(ball, spectral=spectral)
+        lit = scene(floor, item).replace(lights=[lamp])
+        sums = pl.illuminate(lit, item)
+        np.testing.assert_allclose(sums.flux_absorbed + sums.flux_out + sums.flux_ended, sums.flux_in, rtol=1e-4)
+        renderer = pl.Renderer(device)
+        renderer.render(lit, (32, 24))
+        landed = renderer.surroundings.caustics.landed_flux()
+        found[spectral] = sums.flux_in, sums.flux_absorbed, sums.flux_out, landed["caustic"].reshape(-1, 3).sum(axis=0)
+    for three, many in zip(*found.values(), strict=True):
+        np.testing.assert_allclose(many, three, rtol=0.02)

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 MOST_TEXELS = 1 << 20  # of an atlas: 24 MB of sums and 36 MB of maps
 WIDE_GROUPS = 16384
-UNITS = 2.0**31  # the bound of flux in fixed point; as much again is left to rounding
+UNITS = 2.0**30  # the bound of flux in fixed point; as much again is left to rounding
 HALF_MAX = 65504.0
 KINDS = ("caustic", "blocked")
 
@@ -178,7 +178,7 @@ class CausticMaps:
         if self.charts is None:
             return {name: np.zeros(3) for kind in KINDS for name in (kind, f"{kind}_missed")}
         size = self.charts.size[0] * self.charts.size[1]
-        sums = self.device.read(self._landing["flux_sums"], np.uint32, (size + 1, 2, 3)) / self._units_per_flux
+        sums = self.device.read(self._landing["flux_sums"], np.int32, (size + 1, 2, 3)) / self._units_per_flux
         landed, lost = sums[:-1].sum(axis=0), sums[-1]
         return {
             name: rows[i] for i, kind in enumerate(KINDS) for name, rows in ((kind, landed), (f"{kind}_missed", lost))

@@ -4,7 +4,7 @@
 
 @group(0) @binding(2) var<storage, read> outgoing: array<OutPatch>;
 
-var<workgroup> missed: array<atomic<u32>, 6>;
+var<workgroup> missed: array<atomic<i32>, 6>;
 
 fn land_ray(origin_ws: vec3f, way_ws: vec3f) -> ChartPoint {
     let hit = nearest_surface(origin_ws, way_ws, 1e30, false);
@@ -54,15 +54,15 @@ fn bundle_way(bundle: OutPatch, corner: u32) -> vec3f {
 // Light that no chart receives is counted, so that energy can be checked: in the workgroup first, which is quicker
 fn miss(units: vec3f, kind: u32, noise: f32) {
     let whole = floor(units + noise);
-    atomicAdd(&missed[3u * kind], u32(whole.x));
-    atomicAdd(&missed[3u * kind + 1u], u32(whole.y));
-    atomicAdd(&missed[3u * kind + 2u], u32(whole.z));
+    atomicAdd(&missed[3u * kind], i32(whole.x));
+    atomicAdd(&missed[3u * kind + 1u], i32(whole.y));
+    atomicAdd(&missed[3u * kind + 2u], i32(whole.z));
 }
 
 // Drivers have been met that hand out workgroup memory as the last kernel left it
 fn clear_missed(local: u32) {
     if local < SUMS_PER_TEXEL {
-        atomicStore(&missed[local], 0u);
+        atomicStore(&missed[local], 0);
     }
     workgroupBarrier();
 }

@@ -3,7 +3,7 @@
 //!struct LandParams from surroundings.layouts
 
 @group(0) @binding(0) var<uniform> landing: LandParams;
-@group(0) @binding(1) var<storage, read> flux_sums: array<u32>;
+@group(0) @binding(1) var<storage, read> flux_sums: array<i32>;
 @group(0) @binding(2) var<storage, read> chart_area: array<f32>;
 
 override MOST: f32 = 3.0e38;  // the largest number that the maps hold

@@ -10,7 +10,7 @@ const SPLAT_LEAST = 0.02;   // texels, smallest width of a point
 const SUMS_PER_TEXEL = 6u;
 
 @group(0) @binding(0) var<uniform> landing: LandParams;
-@group(0) @binding(1) var<storage, read_write> flux_sums: array<atomic<u32>>;
+@group(0) @binding(1) var<storage, read_write> flux_sums: array<atomic<i32>>;
 
 // A quadrangle on a chart; corners in texels, in the order (0, 0), (1, 0), (0, 1), (1, 1)
 struct Quad {
@@ -62,12 +62,12 @@ fn splat(q: Quad, point: ChartPoint, units: vec3f, kind: u32, noise: f32) {
         let value = weights[k / 4u][k % 4u] * share + rest;
         let whole = floor(value);
         rest = value - whole;
-        if any(whole > vec3f(0.0)) {
+        if any(whole != vec3f(0.0)) {
             let texel = clamp(base + vec2f(f32(k % 4u), f32(k / 4u)), point.low, point.high - 1.0);
             let place = SUMS_PER_TEXEL * (u32(texel.y) * landing.width + u32(texel.x)) + 3u * kind;
-            atomicAdd(&flux_sums[place], u32(whole.x));
-            atomicAdd(&flux_sums[place + 1u], u32(whole.y));
-            atomicAdd(&flux_sums[place + 2u], u32(whole.z));
+            atomicAdd(&flux_sums[place], i32(whole.x));
+            atomicAdd(&flux_sums[place + 1u], i32(whole.y));
+            atomicAdd(&flux_sums[place + 2u], i32(whole.z));
         }
     }
 }

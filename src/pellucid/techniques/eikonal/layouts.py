@@ -79,6 +79,7 @@ LightParams = struct(
         ("kind", "u32"),  # 0 parallel, 1 from a point, 2 from a point of a face
         ("direction", "vec3f"),  # of travel; or the normal of the face, unit
         ("inside", "u32"),  # the lamp stands inside the box
+        ("weights", "mat3x3f"),  # what flux is worth at the wavelength that is followed
         ("power", "vec3f"),  # irradiance, or radiant intensity
         ("casts", "u32"),  # meshes stop it before it arrives
         ("box_half", "vec3f"),  # of the box that the front begins on, object metres
@@ -91,7 +92,7 @@ LightParams = struct(
         ("out_capacity", "u32"),
         ("bounces", "u32"),
         ("most_layers", "u32"),  # of voxels that a straight piece can cross
-        ("patch_flux", "f32"),  # largest of the front
+        ("patch_flux", "f32"),  # largest of the front, at this wavelength
         ("min_flux", "f32"),
         ("divide_above", "f32"),  # patches with less than this share of `patch_flux` stay wide
         ("split_width", "f32"),  # object metres

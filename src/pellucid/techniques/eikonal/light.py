@@ -131,7 +131,13 @@ class LightSimulator:
         self._grid, self._scale, self._prepared = grid, scale, prepared
         self._record = _record(prepared, grid, box, scale, sources, light_quality)
         self._clear()
-        jobs = [(s, draw, first) for draw in draws_of(prepared) for s in sources for first in range(0, s.tiles, BATCH)]
+        jobs = [
+            (source, draw, first)
+            for draw in draws_of(prepared)
+            for source in sources
+            if _worth(source, draw[1]) > 0.0
+            for first in range(0, source.tiles, BATCH)
+        ]
         for number, (source, (channel, weights), first) in enumerate(jobs):
             params = self._params(source, weights, first)
             bindings = {
@@ -195,7 +201,10 @@ class LightSimulator:
         out = self._record.copy()
         out["position"], out["direction"], out["kind"] = source.position, source.direction, source.kind
         out["inside"], out["casts"] = source.inside, source.casts
-        out["power"] = weights @ source.power
+        # Bundles carry what the lamp sends out: matter takes from that, and what is left is worth its weights.
+        out["power"] = source.power
+        out["weights"][:, :3] = weights.T  # columns
+        out["patch_flux"] *= _worth(source, weights)
         out["face_count"] = len(source.faces)
         out["faces"][: len(source.faces)] = source.faces
         out["batch_first"], out["batch_count"] = first, min(BATCH, source.tiles - first)
@@ -228,7 +237,8 @@ class LightSimulator:
     def totals(self) -> tuple[dict[str, np.ndarray], int]:
         """Where the flux went, (3,) float64 each, and how many patches were followed; waits for the device."""
         words = self.device.read(self._buffers["counters"], np.uint32, (GENERATIONS + 1) * 4 + 32)[-32:]
-        sums = words[0::2].astype(np.float64) + 2.0**32 * words[1::2]
+        low, high = words[0::2].astype(np.int64), words[1::2].astype(np.int64)
+        sums = (low + (high << 32)).astype(np.float64)
         per_quantum = 1.0 / float(self._record["total_quanta"])
         flux = {name: sums[3 * k : 3 * k + 3] * per_quantum for k, name in enumerate(TOTALS)}
         flux["flux_ended"] = flux["flux_ended"] - flux.pop("flux_lent")
@@ -239,7 +249,7 @@ class LightSimulator:
         x, y, z = self._grid
         sums = self.device.read(self._buffers["fluence"], np.int32, (z, y, x, 3)).astype(np.float32)
         ways = self.device.read(self._buffers["directions"], np.int32, (z, y, x, 3)).astype(np.float32)
-        fluence = np.maximum(sums, 0.0) * float(self._record["fluence_per_quantum"])
+        fluence = sums * float(self._record["fluence_per_quantum"])
         lit = sums.mean(axis=-1, keepdims=True)
         turn = np.where(lit > 0.5, ways / np.maximum(lit, 1.0), 0.0)
         turn /= np.maximum(np.linalg.norm(turn, axis=-1, keepdims=True), 1.0)
@@ -304,6 +314,11 @@ def _inner(field: np.ndarray, shape: tuple[int, int, int]) -> np.ndarray:
 def has_ambient_matter(prepared: Prepared) -> bool:
     """Whether matter without a surface dims light."""
     return prepared.absorption is not None or prepared.scattering is not None
+
+
+def _worth(source: Source, weights: np.ndarray) -> float:
+    """Of the brightest channel of a lamp, how much is light of one draw."""
+    return float(np.abs(weights @ source.power).max() / source.power.max())
 
 
 def flux_bound(prepared: Prepared, world: np.ndarray, lights: Sequence[object], quality: LightQuality) -> float:

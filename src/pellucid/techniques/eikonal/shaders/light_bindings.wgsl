@@ -64,9 +64,20 @@ fn add_quanta(total: u32, value: u32) {
     if (before > 0xffffffffu - value) { atomicAdd(&counters.totals[2u * total + 1u], 1u); }
 }
 
+// The same for a number that may be negative: the two words are a 64-bit integer.
+fn add_signed(total: u32, value: i32) {
+    add_quanta(total, u32(value));
+    if (value < 0) { atomicAdd(&counters.totals[2u * total + 1u], 0xffffffffu); }
+}
+
+// What flux is worth at the wavelength that is followed. Colours of single wavelengths have negative components.
+fn weighed(flux: vec3f) -> vec3f {
+    return light.weights * flux;
+}
+
 fn add_flux(total: u32, flux: vec3f) {
-    let quanta = vec3u(max(flux, vec3f(0.0)) * light.total_quanta + 0.5);
-    add_quanta(total, quanta.x);
-    add_quanta(total + 1u, quanta.y);
-    add_quanta(total + 2u, quanta.z);
+    let quanta = vec3i(floor(weighed(flux) * light.total_quanta + 0.5));
+    add_signed(total, quanta.x);
+    add_signed(total + 1u, quanta.y);
+    add_signed(total + 2u, quanta.z);
 }

@@ -71,7 +71,7 @@ fn between_corners(v: array<vec3f, 4>, at: vec2f) -> vec3f {
 
 // Light of one patch relative to what it had when it entered, however often it was divided since.
 fn relative(flux: vec3f, level: u32) -> f32 {
-    return largest_of(abs(flux)) * exp2(f32(level)) / light.patch_flux;
+    return largest_of(abs(weighed(flux))) * exp2(f32(level)) / light.patch_flux;
 }
 
 fn largest_of(v: vec3f) -> f32 {
@@ -80,7 +80,7 @@ fn largest_of(v: vec3f) -> f32 {
 
 // Worth dividing: a patch that carries little is left wide, since its streaks cannot be seen.
 fn worth_dividing(flux: vec3f) -> bool {
-    return largest_of(abs(flux)) > light.divide_above * light.patch_flux;
+    return largest_of(abs(weighed(flux))) > light.divide_above * light.patch_flux;
 }
 
 fn emit(place: u32, x: array<vec3f, 4>, p: array<vec3f, 4>, flux: vec3f, from_patch: LightPatch) {
@@ -172,7 +172,7 @@ fn put_out(kind: u32, x: array<vec3f, 4>, p: array<vec3f, 4>, flux: vec3f) {
     out.way_1 = way_to_world(p[1]);
     out.way_2 = way_to_world(p[2]);
     out.way_3 = way_to_world(p[3]);
-    out.flux = flux;
+    out.flux = weighed(flux);
     outgoing[place] = out;
 }
 

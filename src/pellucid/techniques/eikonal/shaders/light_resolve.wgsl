@@ -19,6 +19,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let lit = (sum.x + sum.y + sum.z) / 3.0;
     let turn = way / max(lit, 1.0);
     let bounded = turn / max(length(turn), 1.0);
-    textureStore(fluence_image, at, vec4f(max(sum, vec3f(0.0)) * light.fluence_per_quantum, 0.0));
+    textureStore(fluence_image, at, vec4f(sum * light.fluence_per_quantum, 0.0));
     textureStore(direction_image, at, vec4f(select(vec3f(0.0), bounded, lit > 0.5), 0.0));
 }

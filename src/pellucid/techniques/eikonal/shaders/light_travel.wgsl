@@ -116,7 +116,8 @@ struct TubePlace {
     voxels: u32,          // that share it
 }
 
-fn deposit(flux: vec3f, length_m: f32, d: vec3f, place: TubePlace, bounds: vec3f, axis: u32) {
+fn deposit(carried: vec3f, length_m: f32, d: vec3f, place: TubePlace, bounds: vec3f, axis: u32) {
+    let flux = weighed(carried);
     let at = place.at;
     let size = place.size;
     let strides = turned_whole(vec3u(1u, light.grid.x, light.grid.x * light.grid.y), axis);
