@@ -92,7 +92,15 @@ def everything(inputs: Path) -> Scene:
             RefractiveVolume.from_mesh(
                 inputs / "box.ply", "N-BK7", 12, 1.33, boundary="smooth", quality=Quality(bounces=3, adaptive=False)
             ),
-            RefractiveVolume.from_mesh(inputs / "box.ply", ruby, 12, position=(1, 0, 0), dispersion=False, gloss=0.2),
+            RefractiveVolume.from_mesh(
+                inputs / "box.ply",
+                ruby,
+                12,
+                position=(1, 0, 0),
+                dispersion=False,
+                gloss=0.2,
+                proxy=Mesh.load(inputs / "box.ply"),
+            ),
             RefractiveVolume.from_array(
                 INDEX,
                 (0.6, 0.5, 0.4),
@@ -100,9 +108,10 @@ def everything(inputs: Path) -> Scene:
                 emission=RNG.random((4, 5, 6, 3)),
                 reflection=RNG.random((4, 5, 6, 4)),
                 brdf=TabulatedBRDF(0.3 * RNG.random((5, 4, 3))),
+                proxy=Mesh.box(0.3),
             ),
             RefractiveVolume.from_regions(
-                [(ball, 1.7), (ball, "diamond")], 8, 0.8, 1.2, center_m=(0, 1, 0), brdf=GGX(0.5)
+                [(ball, 1.7), (ball, "diamond")], 8, 0.8, 1.2, center_m=(0, 1, 0), brdf=GGX(0.5), proxy="sphere"
             ),
             RefractiveVolume.from_volume(murky),
         ],

@@ -93,6 +93,10 @@ def test_volumes_are_values() -> None:
         ({"surroundings": "mirror"}, "refractive_volume.surroundings"),
         ({"quality": "high"}, "refractive_volume.quality"),
         ({"center_m": (0, 0)}, "refractive_volume.center_m"),
+        ({"brdf": "ggx"}, "refractive_volume.brdf"),
+        ({"gloss": 2.0}, "refractive_volume.gloss"),
+        ({"proxy": "cylinder"}, "refractive_volume.proxy"),
+        ({"proxy": 3}, "refractive_volume.proxy"),
     ],
 )
 def test_each_fault_names_its_field(changes: dict, field: str) -> None:

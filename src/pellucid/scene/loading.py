@@ -90,14 +90,18 @@ def _mesh(part: schema.MeshBase, folder: Path) -> Mesh:
     if isinstance(part, schema.MeshOfFile):
         return Mesh.load(folder / part.file, **given)
     if isinstance(part, schema.MeshOfArrays):
-        from pellucid.io.volumes import read_arrays
-
-        path = folder / part.arrays
-        arrays: dict[str, Any] = dict(read_arrays(path))
-        if not {"vertices", "faces"} <= set(arrays) <= {"vertices", "faces", "normals", "uvs"}:
-            raise AssetError(path, f"holds {sorted(arrays)}, not a mesh", "it needs vertices and faces")
-        return Mesh(**arrays, **given)  # no recipe: saving under the same name writes these arrays anew
+        # No recipe: saving under the same name writes these arrays anew.
+        return _mesh_of_arrays(folder / part.arrays, **given)
     return MESHES[part.kind](**given)  # type: ignore[attr-defined]
+
+
+def _mesh_of_arrays(path: Path, **given: Any) -> Mesh:
+    from pellucid.io.volumes import read_arrays
+
+    arrays: dict[str, Any] = dict(read_arrays(path))
+    if not {"vertices", "faces"} <= set(arrays) <= {"vertices", "faces", "normals", "uvs"}:
+        raise AssetError(path, f"holds {sorted(arrays)}, not a mesh", "it needs vertices and faces")
+    return Mesh(**arrays, **given)
 
 
 def _map(name: str, folder: Path) -> np.ndarray | None:
@@ -117,6 +121,8 @@ def _volume(part: Any, folder: Path) -> RefractiveVolume:
         look["quality"] = _valued(Quality, part.quality)
     if "light" in look:
         look["light"] = _valued(LightQuality, part.light)
+    if "proxy" in look:
+        look["proxy"] = _proxy(part.proxy, folder)
     if "brdf" in look:
         look["brdf"] = _brdf(part.brdf, folder)
     if "center_m" in part.model_fields_set:
@@ -135,6 +141,13 @@ def _valued(kind: type, part: schema.Model) -> Any:
         return kind(**part.given())
     except SceneError as error:
         raise SceneError(f"refractive_volume.{error.field}", error.reason, error.remedy) from error
+
+
+def _proxy(name: str, folder: Path) -> str | Mesh:
+    """The name of a shape, or a mesh by the file that holds it."""
+    if not Path(name).suffix:
+        return name
+    return _mesh_of_arrays(folder / name) if Path(name).suffix == ".npz" else Mesh.load(folder / name)
 
 
 def _brdf(part: schema.BrdfFile, folder: Path) -> GGX | TabulatedBRDF:

@@ -15,6 +15,7 @@ from pellucid.errors import AssetError, SceneError
 from pellucid.scene import checks
 from pellucid.scene.brdf import GGX, TabulatedBRDF
 from pellucid.scene.light_quality import LightQuality
+from pellucid.scene.mesh import Mesh
 from pellucid.scene.placement import Origin, SceneObject, check_placement, store, translation_matrix
 from pellucid.scene.quality import Quality
 
@@ -45,6 +46,9 @@ class RefractiveVolume(SceneObject):
     surroundings : ``"rays"`` trace what a ray sees once it has left; ``"screen"`` looks it up in the
         picture behind, cheaper and blind to what the picture does not show.
     quality : how carefully rays are bent.
+    proxy : where rays of the picture begin: ``"box"``, a ``"sphere"`` around all matter, or a Mesh that holds it (its
+        geometry without its placement, in the object's own coordinates). Of a mesh it is the convex hull that counts,
+        or 26 planes around it, a little enlarged: the body's own mesh will do. The picture stays the same.
     brdf : how boundaries spread what they mirror, seen from outside: None for mirrors, `GGX` or `TabulatedBRDF`.
         Tint and roughness come from ``volume.reflection``, where there is such.
     gloss : roughness 0 to 1 in which lamps are mirrored where a ray first meets the body; lamps have no size, so a
@@ -71,6 +75,7 @@ class RefractiveVolume(SceneObject):
     gradient: str = "central"
     surroundings: str = "rays"
     quality: Quality = field(default_factory=Quality)
+    proxy: str | Mesh = "box"
     brdf: GGX | TabulatedBRDF | None = None
     gloss: float = 0.08
     light: LightQuality = field(default_factory=LightQuality)
@@ -248,6 +253,7 @@ class RefractiveVolume(SceneObject):
         return cls(Volume.from_regions(list(regions), resolution, extent_m, ambient_n, optic_axes), **options)
 
 
+PROXIES = ("box", "sphere")
 DEFAULTS = tuple(name for name in RefractiveVolume.__dataclass_fields__ if name not in ("volume", "origin"))
 
 
@@ -268,6 +274,7 @@ def _checked(given: Mapping[str, Any]) -> dict[str, Any]:
         "surroundings": lambda f, v: checks.choice(f, v, ("rays", "screen")),
         "quality": _quality,
         "brdf": _brdf,
+        "proxy": _proxy,
         "gloss": lambda f, v: checks.number(f, v, low=0.0, high=1.0),
         "light": _light,
         "center_m": checks.vector,
@@ -290,6 +297,13 @@ def _quality(name: str, value: Any) -> Quality:
     if not isinstance(value, Quality):
         raise SceneError(name, f"cannot be {type(value).__name__!r}", "give Quality(...)")
     return value
+
+
+def _proxy(name: str, value: Any) -> str | Mesh:
+    if isinstance(value, Mesh) or (isinstance(value, str) and value in PROXIES):
+        return value
+    shown = repr(value) if isinstance(value, str) else type(value).__name__
+    raise SceneError(name, f"cannot be {shown}", "give 'box', 'sphere' or a Mesh")
 
 
 def _brdf(name: str, value: Any) -> GGX | TabulatedBRDF | None:

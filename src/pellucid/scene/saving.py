@@ -152,8 +152,17 @@ def _object(thing: Any, label: str, index: int, beside: Sidecars) -> dict[str, A
         look = _stated(thing, LOOKS[RefractiveVolume])
         if thing.boundary == ("sharp" if thing.volume.regions else "smooth"):
             look.pop("boundary", None)  # what "auto" would choose
-        return {"type": "refractive_volume", **source, **look, **_brdf(thing.brdf, label, beside)}
+        look |= _brdf(thing.brdf, label, beside) | _proxy(thing.proxy, label, beside)
+        return {"type": "refractive_volume", **source, **look}
     raise SceneError(f"objects[{index}]", f"a {type(thing).__name__} cannot be written to a scene file")
+
+
+def _proxy(proxy: str | Mesh, label: str, beside: Sidecars) -> dict[str, Any]:
+    if isinstance(proxy, str):
+        return {} if proxy == "box" else {"proxy": proxy}
+    if proxy.origin is not None and "file" in proxy.origin.recipe:
+        return {"proxy": beside.relative(proxy.origin.recipe["file"])}
+    return {"proxy": beside.arrays(f"{label}.proxy", _arrays(proxy))}
 
 
 def _brdf(brdf: GGX | TabulatedBRDF | None, label: str, beside: Sidecars) -> dict[str, Any]:
@@ -164,9 +173,7 @@ def _brdf(brdf: GGX | TabulatedBRDF | None, label: str, beside: Sidecars) -> dic
 
 def _mesh(mesh: Mesh, label: str, beside: Sidecars) -> dict[str, Any]:
     if mesh.origin is None:
-        names = ("vertices", "faces", "normals", "uvs")
-        arrays = {name: getattr(mesh, name) for name in names if getattr(mesh, name) is not None}
-        source: dict[str, Any] = {"arrays": beside.arrays(label, arrays)}
+        source: dict[str, Any] = {"arrays": beside.arrays(label, _arrays(mesh))}
     else:
         source = _plain(mesh.origin.recipe)
         if "file" in source:
@@ -177,6 +184,11 @@ def _mesh(mesh: Mesh, label: str, beside: Sidecars) -> dict[str, Any]:
         picture = mesh.base_color_map
         source["base_color_map"] = "none" if picture is None else beside.picture(f"{label}.map", picture)
     return source
+
+
+def _arrays(mesh: Mesh) -> dict[str, np.ndarray]:
+    names = ("vertices", "faces", "normals", "uvs")
+    return {name: getattr(mesh, name) for name in names if getattr(mesh, name) is not None}
 
 
 def _volume(thing: RefractiveVolume, label: str, where: str, beside: Sidecars) -> dict[str, Any]:

@@ -185,6 +185,7 @@ class VolumeBase(Placed):
     quality: QualityFile = UNSET
     light: LightQualityFile = UNSET
     brdf: BrdfFile = UNSET
+    proxy: StrictStr = UNSET
     gloss: Number = UNSET
 
 

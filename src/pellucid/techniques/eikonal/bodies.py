@@ -9,6 +9,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from pellucid.scene import Quality, RefractiveVolume
+    from pellucid.techniques.eikonal.hulls import Hull
     from pellucid.techniques.eikonal.prepare import Prepared
     from pellucid.techniques.eikonal.proxies import Box
     from pellucid.techniques.eikonal.resources import VolumeTextures
@@ -25,6 +26,7 @@ class Body:
     uniforms : one VolumeParams buffer for each channel of `prepared`.
     world : (4, 4) float64, object to world.
     box : its proxy, object metres.
+    hull : where rays of the picture begin, within the box.
     quality : how carefully rays are bent.
     meets_meshes : opaque meshes reach into its box.
     light : textures "fluence_field" and "light_field" over the prepared box, once light has been followed through it.
@@ -37,5 +39,6 @@ class Body:
     world: np.ndarray
     box: Box
     quality: Quality
+    hull: Hull
     meets_meshes: bool = False
     light: dict[str, Any] = field(default_factory=dict)

@@ -35,6 +35,9 @@ VolumeParams = struct(
         ("writes_depth", "u32"),  # 0 for matter without a surface, such as hot air
         ("coat", "vec4f"),  # tint and roughness of boundaries without reflection data
         ("gloss", "f32"),  # roughness in which smooth boundaries show lamps; 0: not at all
+        ("proxy_plane_count", "u32"),
+        ("proxy_sphere", "vec4f"),  # centre and radius; hull.wgsl
+        ("proxy_planes", ("vec4f", 32)),  # outward normal n and offset w: n.x <= w inside
         ("brdf_layer", "u32"),  # which of the tabulated BRDFs is this volume's
         ("region_n", "vec4f"),
         ("region_absorption", ("vec4f", MAX_REGIONS)),  # 1/m of the world

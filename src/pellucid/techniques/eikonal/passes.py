@@ -6,7 +6,7 @@ A dispersive volume is looked through once for each of its wavelengths, whose we
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT, Targets
 from pellucid.surroundings.charts import Reach
 from pellucid.techniques.eikonal.bodies import Body
 from pellucid.techniques.eikonal.brdf_tables import BrdfTables, spreading
+from pellucid.techniques.eikonal.hulls import Hull, hull_of
 from pellucid.techniques.eikonal.layouts import DrawParams, LookCount, LookRay, VolumeParams
 from pellucid.techniques.eikonal.light import LightSimulator, check_lights, flux_bound
 from pellucid.techniques.eikonal.prepare import Prepared, prepare
@@ -56,6 +57,14 @@ class _Loaded:
     prepared: Prepared
     textures: VolumeTextures
     tight: Box
+    hulls: dict[Any, tuple[Any, Hull]] = field(default_factory=dict)  # by proxies, kept so that no id is used again
+
+    def hull(self, item: RefractiveVolume) -> Hull:
+        """Where rays of the picture begin, for one object with this volume."""
+        key = (item.proxy if isinstance(item.proxy, str) else id(item.proxy), item.center_m)
+        if key not in self.hulls:
+            self.hulls[key] = item.proxy, hull_of(self.prepared, item.proxy, item.center_m)
+        return self.hulls[key][1]
 
 
 class EikonalTechnique:
@@ -216,7 +225,9 @@ class EikonalTechnique:
 
     def _place(self, item: RefractiveVolume, volume: _Loaded, box: Box, before: Body | None) -> Body:
         """The body of an object; buffers of the one before are used again if it has the same volume."""
-        placed = Body((item,), volume.prepared, volume.textures, [], item.object_to_world(), box, item.quality)
+        placed = Body(
+            (item,), volume.prepared, volume.textures, [], item.object_to_world(), box, item.quality, volume.hull(item)
+        )
         if before is not None and before.textures is volume.textures:
             placed.uniforms = before.uniforms
         else:
@@ -237,6 +248,7 @@ class EikonalTechnique:
             )
             self._brdfs.write(record, body.objects[0])
             record["body"], record["body_count"] = self.bodies.index(body), len(self.bodies)
+            body.hull.write(record)
             self.device.write(uniform, record.reshape(1))
             if body.prepared.crystals is not None:
                 crystals = body.prepared.crystals.record(channel)
@@ -352,6 +364,7 @@ class EikonalTechnique:
         constants = {**constants_of(prepared, body.quality), "MEETS_MESHES": float(body.meets_meshes)}
         constants |= {"GLINTS": float(lamps), "ROUGH": float(spreading(body.objects[0]))}
         constants["RELAYED"] = float(len(self.bodies) > 1)
+        constants["PROXY"] = float(body.hull.kind)
         if prepared.sharp:
             constants["GRADED"] = float(prepared.graded)
         name = "view_sharp" if prepared.sharp else "view_smooth"

@@ -28,7 +28,7 @@ def tight_box(prepared: Prepared) -> Box:
     center, half = whole_box(prepared)
     if _is_its_surface(prepared):
         return center, half
-    held = _matter(prepared)
+    held = matter_of(prepared)
     low, high = np.zeros(3), np.zeros(3)
     for axis, edge in enumerate(prepared.voxel_m):
         along = np.flatnonzero(held.any(axis=tuple(a for a in range(3) if a != 2 - axis)))
@@ -49,7 +49,7 @@ def _is_its_surface(prepared: Prepared) -> bool:
     return prepared.sharp and prepared.distance is None
 
 
-def _matter(prepared: Prepared) -> np.ndarray:
+def matter_of(prepared: Prepared) -> np.ndarray:
     """(Z, Y, X) bool: the voxels that hold anything."""
     if prepared.distance is not None:
         held = (prepared.distance < 0.0).any(axis=-1)

@@ -5,7 +5,7 @@
 //!import surroundings/shaders/raycast
 //!import techniques/eikonal/shaders/looks
 //!import techniques/eikonal/shaders/pixels
-//!import techniques/eikonal/shaders/proxy
+//!import techniques/eikonal/shaders/hull
 //!import techniques/eikonal/shaders/splitting
 //!import techniques/eikonal/shaders/bindings
 //!import techniques/eikonal/shaders/fields
@@ -18,7 +18,7 @@ struct Seen {
 }
 
 struct ViewRay {
-    x: vec3f,           // where it enters the proxy box, object space
+    x: vec3f,           // where it enters the proxy, object space
     d: vec3f,           // unit, object space
     distance: f32,      // to there, world metres
     meets: bool,
@@ -159,7 +159,7 @@ fn next_ray() -> ViewRay {
 fn enter(origin: vec3f, direction: vec3f, weight: vec3f, kind: u32) -> ViewRay {
     let x = (volume.object_from_world * vec4f(origin, 1.0)).xyz;
     let d = normalize((volume.object_from_world * vec4f(direction, 0.0)).xyz);
-    let span = proxy_span(x, d);
+    let span = hull_span(x, d);
     let near = max(span.x, 0.0);
     let meets = span.x < span.y && span.y > 0.0;
     var entry = ViewRay(x + near * d, d, near * volume.scale, meets, false, true, weight, kind, look_used, origin, direction);
