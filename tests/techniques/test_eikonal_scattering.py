@@ -225,6 +225,28 @@ def test_an_index_matched_block_scatters_as_much_as_a_cloud_of_the_same_strength
     assert seen[0].max() > 0.01 and error < 2e-3, f"off by {error:.1e}"
 
 
+@pytest.mark.parametrize("kind", ["smooth", "sharp", "body"])
+def test_a_block_under_a_lamp_glows_from_the_side_by_two_exponentials(renderer, kind):
+    """sigma_s E exp(-sigma_t depth) HG(0) (1 - exp(-sigma_t L)) / sigma_t, with the light that the simulator finds."""
+    g, irradiance = 0.4, 3.0
+    fields = {"scattering": everywhere(*SIGMA_S), "anisotropy": np.full((VOXELS,) * 3, g)}
+    volume = pl.Volume.from_array(np.ones((VOXELS,) * 3), EDGE, **fields)
+    if kind == "body":
+        volume = full_block(1.0, scattering=tuple(SIGMA_S), anisotropy=g)
+    item = pl.RefractiveVolume(volume, boundary="smooth" if kind == "smooth" else "sharp")
+    lamp = pl.DirectionalLight(direction=(0, -1, 0), irradiance=irradiance)
+    camera = pl.Camera(position=(0, 0, 1), target=(0, 0, 0), orthographic_height_m=0.08)
+    dark = pl.Environment.constant(DARK)
+    frame = renderer.render(pl.Scene(camera=camera, environment=dark, lights=[lamp], objects=[item]), (24, 24))
+    rows = np.flatnonzero(frame.radiance[:, 12, 2] > 0)
+    depth = 0.5 * EDGE - (0.5 - (rows + 0.5) / 24) * 0.08
+    thick = (1 - np.exp(-SIGMA_S * EDGE)) / SIGMA_S
+    truth = SIGMA_S * irradiance * np.exp(-SIGMA_S * depth[:, None]) * henyey_greenstein(0.0, g) * thick
+    assert len(rows) == 24
+    error = np.abs(frame.radiance[:, 4:20] / truth[:, None] - 1.0).max()
+    assert error < 0.02, f"off by {error:.1e}"
+
+
 # ---- smoke --------------------------------------------------------------------------------------------------
 
 

@@ -67,7 +67,9 @@ fn travel(tube: Tube, flux: ptr<function, vec3f>, of_region: vec3f) {
         let mean = *flux * select((1.0 - kept) / max(depth, vec3f(1e-3)), 1.0 - 0.5 * depth, depth < vec3f(1e-3));
         *flux *= kept;
         t = until;
-        if (DEPOSITS && part > 0.0) {
+        // Light may begin and end outside the grid, where a box that is itself the surface has a margin.
+        let within = all(at >= vec3f(0.0)) && all(at <= bounds);
+        if (DEPOSITS && part > 0.0 && within) {
             let along = 0.5 * (t + from_t);
             var place = TubePlace(at, mix(size_a.size, size_b.size, along), 4u);
             if (tube.weak) {
