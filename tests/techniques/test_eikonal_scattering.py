@@ -289,3 +289,16 @@ def test_smoke_ends_where_its_box_ends_around_a_body_that_is_cut_off_there(devic
     rays = pl.trace(pl.RefractiveVolume(half), [(0.02, 0.01, 1.0), (-0.02, 0.01, 1.0)], [(0, 0, -1.0)])
     error = np.abs(rays.transmittance / np.exp(-SIGMA_A * EDGE) - 1.0).max()
     assert error < 1e-3, f"off by {error:.1e}"
+
+
+@pytest.mark.parametrize("boundary", BOUNDARIES)
+def test_opaque_voxels_keep_their_colour_to_the_rim(renderer, boundary):
+    """White light from all sides: what is matt shows its colour, though beside it there is none to interpolate with."""
+    opaque = np.zeros((VOXELS,) * 3 + (4,))
+    opaque[8:16, 8:16, 8:16] = (0.8, 0.4, 0.2, 1.0)
+    camera = pl.Camera(position=(0.5, 0.3, 1), target=(0, 0, 0), orthographic_height_m=0.08)
+    volume = pl.Volume.from_array(np.ones((VOXELS,) * 3), EDGE, opaque=opaque)
+    seen = radiance_of(renderer, volume, (1, 1, 1), camera=camera, size=(32, 32), boundary=boundary).radiance
+    colours = seen[np.abs(seen - 1.0).max(axis=-1) > 1e-3]
+    error = np.abs(colours / (0.8, 0.4, 0.2) - 1.0).max()
+    assert len(colours) > 100 and error < 2e-3, f"off by {error:.1e}"

@@ -156,7 +156,7 @@ def _prepare_sharp(volume: Volume, gradient: str, method: str, lambdas_nm: Seque
         absorption=volume.absorption,
         emission=volume.emission,
         scattering=scattering,
-        opaque=volume.opaque,
+        opaque=_coloured(volume.opaque),
         reflection=volume.reflection,
         region_absorption=tuple(_rgb(r.medium.absorption_rgb_per_m) for r in regions),
         region_emission=tuple(_rgb(r.emission) for r in regions),
@@ -202,7 +202,7 @@ def _prepare_smooth(
         absorption=absorption,
         emission=emission,
         scattering=scattering,
-        opaque=opaque,
+        opaque=_coloured(opaque),
         reflection=_padded(volume.reflection, pad, "edge"),
         region_absorption=(),
         region_emission=(),
@@ -310,20 +310,38 @@ def _padded(field: np.ndarray | None, pad: int, mode: Literal["constant", "edge"
 
 
 def _phased(volume: Volume) -> np.ndarray | None:
-    """Scattering and its anisotropy as one field (Z, Y, X, 4).
-
-    Where nothing scatters, the anisotropy of the nearest place that does: else that of a cloud would fade at its rim.
-    """
+    """Scattering and its anisotropy as one field (Z, Y, X, 4)."""
     if volume.scattering is None:
         return None
     g = np.zeros(volume.shape, np.float32) if volume.anisotropy is None else volume.anisotropy
-    empty = ~volume.scattering.any(axis=-1)
-    if g.any() and empty.any() and not empty.all():
-        from scipy.ndimage import distance_transform_edt
+    g = _continued(g[..., None], volume.scattering.mean(axis=-1))
+    return np.concatenate([volume.scattering, g], axis=-1)
 
-        nearest = distance_transform_edt(empty, return_distances=False, return_indices=True)
-        g = g[tuple(nearest)]
-    return np.concatenate([volume.scattering, g[..., None]], axis=-1)
+
+def _coloured(opaque: np.ndarray | None) -> np.ndarray | None:
+    """Opaque voxels (Z, Y, X, 4), with their colours going on where their coverage ends."""
+    if opaque is None:
+        return None
+    return np.concatenate([_continued(opaque[..., :3], opaque[..., 3]), opaque[..., 3:]], axis=-1)
+
+
+def _continued(values: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """Values (Z, Y, X, C) that mean something where `weight` (Z, Y, X) is above 0, carried one voxel further.
+
+    Else what is interpolated at the rim of a thing would fade into what stands for nothing.
+    """
+    from scipy.ndimage import uniform_filter
+
+    empty = weight <= 0.0
+    if not values.any() or not empty.any():
+        return values
+    around = uniform_filter(weight.astype(np.float64), 3, mode="constant")
+    near = empty & (around > 1e-9 * float(weight.max()))
+    out = np.array(values, np.float32)
+    for c in range(values.shape[-1]):
+        mean = uniform_filter(values[..., c].astype(np.float64) * weight, 3, mode="constant")
+        out[near, c] = mean[near] / around[near]
+    return out
 
 
 def _force(
