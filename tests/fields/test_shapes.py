@@ -31,6 +31,7 @@ EXACT = {
 BOUNDS = {
     "brilliant": shapes.brilliant_cut(1.0),
     "emerald": shapes.emerald_cut(1.2, 0.9),
+    "rhombohedron": shapes.rhombohedron(0.8)[0],
     "difference": shapes.difference(shapes.box(0.8), shapes.sphere(0.45)),
     "intersection": shapes.intersection(shapes.box(0.8), shapes.sphere(0.5)),
     "smooth_union": shapes.smooth_union(0.1, shapes.box(0.5), shapes.moved(shapes.sphere(0.3), (0.3, 0, 0))),
@@ -231,3 +232,20 @@ def test_hot_air_is_thinner_by_the_ratio_of_temperatures():
 def test_impossible_shapes_are_refused(make):
     with pytest.raises(SceneError):
         make()
+
+
+def test_a_cleavage_rhomb_of_calcite():
+    """One edge lies along x, the others are turned by thirds about the axis; angles of 101.9 degrees, 8 corners."""
+    shape, axis = shapes.rhombohedron(0.8)
+    k = np.cross(np.eye(3), -axis)
+    third = np.eye(3) + np.sin(np.radians(120)) * k + (1 - np.cos(np.radians(120))) * k @ k
+    edges = np.array([[1.0, 0.0, 0.0], third @ [1.0, 0.0, 0.0], third @ third @ [1.0, 0.0, 0.0]])
+    assert np.degrees(np.arccos(edges[0] @ edges[1])) == pytest.approx(101.9)
+    signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    for corner in 0.4 * signs @ edges:
+        assert abs(shape(*corner)) < 1e-12 and shape(*(0.99 * corner)) < 0.0
+    middles = 0.4 * np.concatenate([edges, -edges])  # of the faces
+    assert np.abs(shape(*middles.T)).max() < 1e-12
+    assert sum(abs(middle[1]) > 0.3 for middle in middles) == 2, "one face is up and one is down"
+    with pytest.raises(SceneError, match="blunt_deg"):
+        shapes.rhombohedron(0.8, 80.0)

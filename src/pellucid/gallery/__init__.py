@@ -1,9 +1,15 @@
 """Pictures that show what the renderer does; `pellucid demo` and `pellucid gallery` render them."""
 
-from . import amber, light, solids, table
+from . import amber, crystals, light, solids, table
 from .picture import Picture
 
 #: All pictures, in the order in which they are shown.
-PICTURES: tuple[Picture, ...] = (*solids.PICTURES, *table.PICTURES, *light.PICTURES, *amber.PICTURES)
+PICTURES: tuple[Picture, ...] = (
+    *solids.PICTURES,
+    *table.PICTURES,
+    *light.PICTURES,
+    *amber.PICTURES,
+    *crystals.PICTURES,
+)
 
 __all__ = ["PICTURES", "Picture"]

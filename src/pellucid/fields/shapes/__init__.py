@@ -5,7 +5,14 @@ surface, except for `ellipsoid` and what is made of it.
 """
 
 from pellucid.fields.shapes.creature import creature, creature_mesh
-from pellucid.fields.shapes.gems import brilliant_cut, brilliant_planes, convex, emerald_cut, emerald_planes
+from pellucid.fields.shapes.gems import (
+    brilliant_cut,
+    brilliant_planes,
+    convex,
+    emerald_cut,
+    emerald_planes,
+    rhombohedron,
+)
 from pellucid.fields.shapes.glassware import wine_glass
 from pellucid.fields.shapes.graded import grin_rod, hot_air, luneburg, maxwell_fish_eye
 from pellucid.fields.shapes.lettering import embossed_block, lettering
@@ -36,6 +43,6 @@ __all__ = [
     "Shape", "box", "brilliant_cut", "brilliant_planes", "capsule", "convex", "creature", "creature_mesh",
     "cylinder", "difference", "ellipsoid", "embossed_block", "emerald_cut", "emerald_planes", "extruded",
     "extruded_polygon", "grin_rod", "grown", "hot_air", "intersection", "lathe", "lettering", "luneburg",
-    "maxwell_fish_eye", "moved", "nested_rounded_cubes", "plane", "polygon_distance", "prism", "rotated",
-    "rounded_box", "smooth_curve", "smooth_union", "sphere", "surface_nets", "torus", "union", "wine_glass",
+    "maxwell_fish_eye", "moved", "nested_rounded_cubes", "plane", "polygon_distance", "prism", "rhombohedron",
+    "rotated", "rounded_box", "smooth_curve", "smooth_union", "sphere", "surface_nets", "torus", "union", "wine_glass",
 ]  # fmt: skip

@@ -147,6 +147,35 @@ def emerald_cut(length_m: float, width_m: float, corner: float = 0.18) -> Shape:
     return convex(*emerald_planes(length_m, width_m, corner))
 
 
+def rhombohedron(edge_m: float, blunt_deg: float = 101.9) -> tuple[Shape, Values]:
+    """A rhombohedron that lies on one of its six faces; with the angle of calcite's cleavage unless told.
+
+    Parameters
+    ----------
+    edge_m : length of its edges.
+    blunt_deg : blunt angle of its rhombs, above 90 and below 120; three of them meet in two opposite corners.
+
+    Returns
+    -------
+    The shape, centred on the origin, faces up and down along y; and the line through its two blunt corners (3,), unit:
+    the optic axis of calcite.
+    """
+    edge = positive("edge_m", edge_m)
+    if not 90.0 < blunt_deg < 120.0:
+        raise SceneError("blunt_deg", f"is {blunt_deg:g}", "three blunt angles meet in a corner: 90 to 120 degrees")
+    # Edges from a blunt corner lean by `lean` from the axis, 120 degrees apart.
+    lean = np.arcsin(np.sqrt((1.0 - np.cos(np.radians(blunt_deg))) / 1.5))
+    turns = np.radians([0.0, 120.0, 240.0])
+    edges = np.stack([np.sin(lean) * np.cos(turns), np.sin(lean) * np.sin(turns), np.full(3, np.cos(lean))], axis=1)
+    normals = np.cross(np.roll(edges, -1, axis=0), np.roll(edges, -2, axis=0))
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    half = 0.5 * edge * float(np.abs(normals[0] @ edges[0]))
+    side = np.cross(edges[1], normals[0])
+    turn = np.stack([edges[1], normals[0], side])  # rows: where x, y and z of the result lie
+    faces = np.concatenate([normals, -normals]) @ turn.T
+    return convex(faces, np.full(6, half)), turn @ np.array([0.0, 0.0, 1.0])
+
+
 def _at(radius: float, height: float, turn: float) -> tuple[float, float, float]:
     return radius * np.cos(turn), height, radius * np.sin(turn)
 
