@@ -26,8 +26,7 @@ if TYPE_CHECKING:
     from pellucid.gpu.timing import PassTimer
     from pellucid.surroundings.geometry import Geometry
 
-MOST_TEXELS = 1 << 20  # of an atlas: 24 MB of sums and 36 MB of maps
-WIDE_GROUPS = 16384
+MOST_TEXELS = 1 << 20  # of an atlas: 24 MB of sums and up to 40 MB of maps
 UNITS = 2.0**30  # the bound of flux in fixed point; as much again is left to rounding
 HALF_MAX = 65504.0
 KINDS = ("caustic", "blocked")
@@ -67,7 +66,7 @@ class CausticMaps:
             return 0
         texels = self.charts.size[0] * self.charts.size[1]
         wide = self._wide_bundles.size if self._wide_bundles is not None else 0
-        return texels * (24 + 4 + 2 * (16 if self.device.float32_filterable else 8)) + wide
+        return texels * (24 + 8 + 2 * (16 if self.device.float32_filterable else 8)) + wide
 
     def drop(self) -> None:
         """Forget the maps: meshes are drawn as if no refractive matter were there."""
@@ -118,7 +117,7 @@ class CausticMaps:
         Parameters
         ----------
         flux_bound : power that all bundles of one kind and channel will not exceed together, such as what the lamps
-            shed on all bodies. The sums count in 2^-31 of it, and overflow at twice of it.
+            shed on all bodies. The sums count in 2^-30 of it, and overflow at twice of it.
 
         Raises
         ------
@@ -165,7 +164,7 @@ class CausticMaps:
             encoder,
             color=[self._landing[f"{kind}_target"] for kind in KINDS],
             clear=[(0.0, 0.0, 0.0, 0.0)] * 2,
-            bindings=self._landing,
+            bindings={**self._resources, **self._landing},
             timer=timer,
             label="caustics resolve",
         )
@@ -214,6 +213,7 @@ class CausticMaps:
             "landing": device.buffer(LandParams.itemsize, "uniform", "landing"),
             "flux_sums": device.buffer(4 * 6 * (size + 1), "storage", "flux sums"),
             "chart_area": device.buffer(charts.area_m2, "storage", "chart area"),
+            "chart_owner": device.buffer(charts.owner, "storage", "chart owner"),
             "wide_queue": device.buffer(LookCount.itemsize, "indirect", "wide queue"),
             "none": device.buffer(np.array([(0, 1, 1, 0)], LookCount), "storage", "no bundles"),
         }

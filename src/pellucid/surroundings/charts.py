@@ -21,8 +21,10 @@ FLAT = 1e-5  # ... between a triangle and the mean of its group
 CREASE_COS = 0.82  # an edge that bends by more, 35 degrees, parts two charts
 TURNS = 6  # orientations of a chart that are tried for the smallest rectangle
 ATLAS_WIDTH = 64  # at least, texels; a strip of charts would waste a square of it
+LEVELS = 4  # resolutions at which light is collected, each a quarter of the one before: wide bundles go to coarse ones
+LEVEL_FACTOR = 4
 TABLE_CHARTS = 256  # charts in one row of the table texture
-TABLE_TEXELS = 3  # texels of the table for each chart
+TABLE_TEXELS = 2 + LEVELS  # texels of the table for each chart
 
 
 @dataclass(frozen=True)
@@ -57,9 +59,11 @@ class Charts:
     Attributes
     ----------
     front, back : (T,) uint32, chart of each triangle on either side, counted from 1; 0 where there is none.
-    table : (C, 12) float32; rows x and y that give texel coordinates of a world point p as
-        ``row[:3] @ p + row[3]``, then the lowest and the highest x, y that belong to the chart.
+    table : (C, 8 + 4 LEVELS) float32; rows x and y that give texel coordinates of a world point p as
+        ``row[:3] @ p + row[3]``, then for each level the lowest and the highest x, y of its rectangle. A level that is
+        as coarse as the one before shares its rectangle.
     area_m2 : (H, W) float32, surface that each texel of the atlas stands for, weighted by its tent.
+    owner : (H, W) uint32, chart of each texel of the finest level, counted from 1; 0 elsewhere.
     texel_m : edge of a texel in metres, after coarsening.
     """
 
@@ -67,6 +71,7 @@ class Charts:
     back: np.ndarray
     table: np.ndarray
     area_m2: np.ndarray
+    owner: np.ndarray
     texel_m: float
 
     @property
@@ -78,7 +83,8 @@ class Charts:
 def no_charts(count: int) -> Charts:
     """An atlas of one empty texel for `count` triangles."""
     none = np.zeros(count, np.uint32)
-    return Charts(none, none, np.zeros((0, 12), np.float32), np.zeros((1, 1), np.float32), 1.0)
+    table = np.zeros((0, 8 + 4 * LEVELS), np.float32)
+    return Charts(none, none, table, np.zeros((1, 1), np.float32), np.zeros((1, 1), np.uint32), 1.0)
 
 
 def build_charts(
@@ -125,12 +131,20 @@ def build_charts(
         return no_charts(len(corners))
     cells, corner, size, texel_m = _fit(high - low, texel_m, most_texels)
     table = _table(frame, low, high, cells, corner)
-    at = np.einsum("fcd,fkd->fck", points, table[label].reshape(-1, 3, 4)[:, :2, :3]) + table[label][:, None, [3, 7]]
+    rows, base = table[label], table[label][:, None, 8:10]
+    at = np.einsum("fcd,fkd->fck", points, rows[:, :8].reshape(-1, 2, 4)[..., :3]) + rows[:, None, [3, 7]]
     _, double_area = _normals(points)
-    area = covered_area(at, 0.5 * double_area, table[label][:, 8:10], table[label][:, 10:12], size)
+    area = np.zeros(size[::-1])
+    for level, new in enumerate(_distinct(cells).T):
+        on = new[label]
+        bounds = rows[on, 8 + 4 * level : 12 + 4 * level]
+        scale = (bounds[:, 2:] - bounds[:, :2]) / (rows[on, 10:12] - rows[on, 8:10])
+        here = (at[on] - base[on]) * scale[:, None] + bounds[:, None, :2]
+        area += covered_area(here, 0.5 * double_area[on], bounds[:, :2], bounds[:, 2:], size)
     word = np.zeros((2, len(corners)), np.uint32)
     word[back.astype(int), face] = label + 1
-    return Charts(word[0], word[1], table.astype(np.float32), area.astype(np.float32), texel_m)
+    owner = _owner(cells[:, 0], corner[:, 0], size)
+    return Charts(word[0], word[1], table.astype(np.float32), area.astype(np.float32), owner, texel_m)
 
 
 def _normals(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -295,14 +309,36 @@ def _bounds(
 
 
 def _fit(extent: np.ndarray, texel_m: float, most: int) -> tuple[np.ndarray, np.ndarray, tuple[int, int], float]:
-    """Texels (C, 2) of each chart, its lower corner (C, 2) in the atlas, the size of the atlas, and the texel used."""
+    """Texels (C, LEVELS, 2) of each chart, lower corners (C, LEVELS, 2), the size of the atlas, and the texel used."""
     while True:
-        cells = np.maximum(np.ceil(extent / texel_m - 1e-6), 1).astype(np.int64)
-        corner, size = _pack(cells)
-        texels = size[0] * size[1]
-        if texels <= most or (cells == 1).all():
+        finest = np.maximum(np.ceil(extent / texel_m - 1e-6), 1).astype(np.int64)
+        cells = np.stack([-(-finest // LEVEL_FACTOR**level) for level in range(LEVELS)], axis=1)
+        new = _distinct(cells)
+        packed, size = _pack(cells[new])
+        if size[0] * size[1] <= most or (cells == 1).all():
+            corner = np.zeros_like(cells)
+            corner[new] = packed
+            for level in range(1, LEVELS):
+                corner[:, level] = np.where(new[:, level, None], corner[:, level], corner[:, level - 1])
             return cells, corner, size, texel_m
-        texel_m *= max(1.05, np.sqrt(min(texels / most, 1e6)))
+        texel_m *= max(1.05, np.sqrt(min(size[0] * size[1] / most, 1e6)))
+
+
+def _distinct(cells: np.ndarray) -> np.ndarray:
+    """Whether each level (C, LEVELS) has a rectangle of its own."""
+    coarser = np.logical_or.reduce(cells[:, 1:] != cells[:, :-1], axis=2)
+    return np.concatenate([np.ones((len(cells), 1), bool), coarser], axis=1)
+
+
+def _owner(cells: np.ndarray, corner: np.ndarray, size: tuple[int, int]) -> np.ndarray:
+    """Which rectangle (C, 2) covers each texel, counted from 1."""
+    count = cells.prod(axis=1)
+    chart = np.repeat(np.arange(len(cells)), count)
+    place = np.arange(len(chart)) - np.repeat(np.cumsum(count) - count, count)
+    owner = np.zeros(size[::-1], np.uint32)
+    x, y = corner[chart, 0] + place % cells[chart, 0], corner[chart, 1] + place // cells[chart, 0]
+    owner[y, x] = chart + 1
+    return owner
 
 
 def _pack(cells: np.ndarray) -> tuple[np.ndarray, tuple[int, int]]:
@@ -324,6 +360,7 @@ def _pack(cells: np.ndarray) -> tuple[np.ndarray, tuple[int, int]]:
 
 
 def _table(frame: np.ndarray, low: np.ndarray, high: np.ndarray, cells: np.ndarray, corner: np.ndarray) -> np.ndarray:
-    scale = cells / (high - low)
-    rows = np.concatenate([frame * scale[..., None], (corner - low * scale)[..., None]], axis=-1)
-    return np.concatenate([rows.reshape(-1, 8), corner, corner + cells], axis=1)
+    scale = cells[:, 0] / (high - low)
+    rows = np.concatenate([frame * scale[..., None], (corner[:, 0] - low * scale)[..., None]], axis=-1)
+    bounds = np.concatenate([corner, corner + cells], axis=-1)
+    return np.concatenate([rows.reshape(-1, 8), bounds.reshape(len(cells), -1)], axis=1)

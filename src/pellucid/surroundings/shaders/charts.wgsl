@@ -2,7 +2,8 @@
 //!import surroundings/shaders/bindings
 
 const TABLE_CHARTS = 256u;  // charts.TABLE_CHARTS
-const TABLE_TEXELS = 3u;    // charts.TABLE_TEXELS
+const CHART_LEVELS = 4u;    // charts.LEVELS
+const TABLE_TEXELS = 6u;    // charts.TABLE_TEXELS
 const CHART_RIM = 0.02;     // texels that rounding may put a point outside its chart
 
 struct ChartPoint {
@@ -26,11 +27,21 @@ fn chart_row(chart: u32, row: u32) -> vec4f {
     return bitcast<vec4f>(textureLoad(caustic_charts, texel, 0));
 }
 
-// The point of a chart; of no chart when it is cut off there
+// Lower and upper corner of the rectangle of a chart at one of its resolutions
+fn chart_bounds(chart: u32, level: u32) -> vec4f {
+    return chart_row(chart, 2u + level);
+}
+
+// The same place at another resolution
+fn between_levels(at: vec2f, bounds: vec4f, other: vec4f) -> vec2f {
+    return other.xy + (at - bounds.xy) * (other.zw - other.xy) / (bounds.zw - bounds.xy);
+}
+
+// The point of a chart, at its finest resolution; of no chart when it is cut off there
 fn chart_point(chart: u32, p_ws: vec3f) -> ChartPoint {
     let p = vec4f(p_ws, 1.0);
     let at = vec2f(dot(chart_row(chart, 0u), p), dot(chart_row(chart, 1u), p));
-    let bounds = chart_row(chart, 2u);
+    let bounds = chart_bounds(chart, 0u);
     let inside = chart != 0u && all(at >= bounds.xy - CHART_RIM) && all(at <= bounds.zw + CHART_RIM);
     return ChartPoint(select(0u, chart, inside), clamp(at, bounds.xy, bounds.zw), bounds.xy, bounds.zw);
 }

@@ -1,8 +1,9 @@
-// Bundles that leave refractive matter land on the meshes: one invocation a bundle. Those that are wide on the atlas,
+// Bundles that leave refractive matter land on the meshes: one invocation a bundle. Those that are very wide,
 // or that parts of different charts receive, wait for land_wide.wgsl.
 //!import surroundings/shaders/landing
 //!struct LookCount from surroundings.layouts
 
+const WIDE = 64.0;           // texels across that a bundle is taken at its corners' word
 const NARROW_COS = 0.95;     // rays of a bundle less than 18 degrees apart: when all miss, so does what is between
 
 struct WideQueue {
@@ -16,7 +17,7 @@ struct WideQueue {
 @group(0) @binding(4) var<storage, read_write> wide_queue: WideQueue;
 @group(0) @binding(5) var<storage, read_write> wide_bundles: array<u32>;
 
-const WIDE_GROUPS = 16384u;  // caustics.WIDE_GROUPS
+const WIDE_GROUPS = 16384u;   // at most; each then takes several rounds
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) local: u32) {
@@ -43,17 +44,16 @@ fn land(index: u32) {
         point = landed;
     }
     let q = Quad(corners[0], corners[1], corners[2], corners[3]);
-    let extent = quad_extent(q);
     let units = bundle.flux * landing.units_per_flux;
     let noise = bundle_noise(bundle, 0u);
     let lost = !torn && point.chart == 0u && least_cos > NARROW_COS;
     if lost {
         miss(units, bundle.kind, noise);
-    } else if torn || point.chart == 0u || extent > SPLAT_WINDOW {
+    } else if torn || point.chart == 0u || quad_extent(q) > WIDE {
         let place = atomicAdd(&wide_queue.count, 1u);
         atomicMax(&wide_queue.groups_x, min(place + 1u, WIDE_GROUPS));
         wide_bundles[place] = index;
     } else {
-        splat(q, point, units, bundle.kind, noise);
+        spread(q, point, units, bundle.kind, noise);
     }
 }

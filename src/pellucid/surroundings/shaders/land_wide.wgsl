@@ -1,11 +1,10 @@
-// A bundle that is wide on the atlas, or torn by an edge, is cut into 8 x 8 parts: one workgroup a bundle, one
-// invocation a part. The middle of each part is traced; its light lies around there, or just there when torn.
+// A bundle that is very wide, or torn by an edge, is cut into 8 x 8 parts: one workgroup a bundle, one invocation a
+// part. The middle of each part is traced; its light lies around there.
 //!import surroundings/shaders/landing
 //!struct LookCount from surroundings.layouts
 
 const PARTS = 8u;
 const POINT_EXTENT = 0.5;  // texels
-const BLOCKS = 4u;  // at most, along each side of a part
 
 @group(0) @binding(3) var<storage, read> wide_queue: LookCount;
 @group(0) @binding(4) var<storage, read> wide_bundles: array<u32>;
@@ -45,21 +44,11 @@ fn land_part(index: u32, part: u32) {
         miss(units, bundle.kind, noise);
         return;
     }
-    let whole = charts[0] == charts[1] && charts[0] == charts[2] && charts[0] == charts[3] && charts[0] == point.chart;
     var q = quad_part(Quad(corners[0], corners[1], corners[2], corners[3]), low, low + 1.0 / f32(PARTS));
-    if !whole {
+    if any(vec4u(charts[0], charts[1], charts[2], charts[3]) != vec4u(point.chart)) {
         q = torn_part(bundle, low, landed_triangle, point);
     }
-    let blocks = clamp(u32(ceil(quad_extent(q) / SPLAT_WINDOW)), 1u, BLOCKS);
-    for (var k = 0u; k < blocks * blocks; k++) {
-        let at = vec2f(f32(k % blocks), f32(k / blocks)) / f32(blocks);
-        let block = quad_part(q, at, at + 1.0 / f32(blocks));
-        let extent = quad_extent(block);
-        // A block that is still too wide is drawn smaller than it is: gaps show, and no light is lost.
-        let shrink = 0.5 - 0.5 * min(1.0, SPLAT_WINDOW / max(extent, 1e-9));
-        let kept = quad_part(block, vec2f(shrink), vec2f(1.0 - shrink));
-        splat(kept, point, units / f32(blocks * blocks), bundle.kind, fract(noise + 0.618034 * f32(k)));
-    }
+    spread(q, point, units, bundle.kind, noise);
 }
 
 // Where a part lies whose bundle is torn: on the plane that its middle hits. A small one goes to that point alone, for

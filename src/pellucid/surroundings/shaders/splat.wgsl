@@ -4,6 +4,7 @@
 //!struct OutPatch from surroundings.layouts
 
 const SPLAT_WINDOW = 2.0;   // texels across that a splat may be wide: with its tents it then covers 4 x 4 of them
+const SPLAT_BLOCKS = 9.0;   // of that size, at most; what takes more goes to the next coarser resolution
 const SPLAT_POINTS = 2.0;   // a texel
 const SPLAT_LEAST = 0.02;   // texels, smallest width of a point
 // RGB of the caustic, RGB of the blocked light; after the last texel, those of the light that no chart has received
@@ -36,11 +37,48 @@ fn quad_part(q: Quad, low: vec2f, high: vec2f) -> Quad {
     );
 }
 
-// Spread light evenly over a quadrangle no wider than SPLAT_WINDOW: by a lattice of boxes, each as large as its share of
-// the quadrangle and weighted with the tents of the texels around. Neighbouring bundles sum to a plateau.
-// `units` is the flux in units of the sums; `noise` in 0..1 decides how fractions are rounded, so that none is lost on
-// average.
-fn splat(q: Quad, point: ChartPoint, units: vec3f, kind: u32, noise: f32) {
+// Into how many blocks a quadrangle is cut along its two directions, so that none is wider than SPLAT_WINDOW
+fn block_counts(q: Quad) -> vec2f {
+    let u = max(abs(q.b - q.a), abs(q.d - q.c));
+    let v = max(abs(q.c - q.a), abs(q.d - q.b));
+    let counts = max(ceil(vec2f(max(u.x, u.y), max(v.x, v.y)) / SPLAT_WINDOW), vec2f(1.0));
+    let size = u / counts.x + v / counts.y;
+    return counts * max(ceil(max(size.x, size.y) / SPLAT_WINDOW - 0.01), 1.0);
+}
+
+// Spread light evenly over a quadrangle on a chart, at the resolution that suits its size: what is many texels wide
+// costs no more than what is small, and is blurred by no more than half its own width.
+fn spread(q: Quad, point: ChartPoint, units: vec3f, kind: u32, noise: f32) {
+    let finest = vec4f(point.low, point.high);
+    var bounds = finest;
+    var there = q;
+    var counts = block_counts(q);
+    for (var level = 1u; level < CHART_LEVELS && counts.x * counts.y > SPLAT_BLOCKS; level++) {
+        bounds = chart_bounds(point.chart, level);
+        there = Quad(
+            between_levels(q.a, finest, bounds), between_levels(q.b, finest, bounds),
+            between_levels(q.c, finest, bounds), between_levels(q.d, finest, bounds)
+        );
+        counts = block_counts(there);
+    }
+    counts = min(counts, vec2f(SPLAT_BLOCKS));
+    counts.y = max(min(counts.y, floor(SPLAT_BLOCKS / counts.x)), 1.0);
+    let columns = u32(counts.x);
+    let blocks = columns * u32(counts.y);
+    for (var k = 0u; k < blocks; k++) {
+        let at = vec2f(f32(k % columns), f32(k / columns)) / counts;
+        let block = quad_part(there, at, at + 1.0 / counts);
+        // What is too wide even so is drawn smaller than it is: gaps show, and no light is lost.
+        let shrink = 0.5 - 0.5 * min(1.0, SPLAT_WINDOW / max(quad_extent(block), 1e-9));
+        let kept = quad_part(block, vec2f(shrink), vec2f(1.0 - shrink));
+        splat(kept, bounds, units / f32(blocks), kind, fract(noise + 0.618034 * f32(k)));
+    }
+}
+
+// A quadrangle no wider than SPLAT_WINDOW: a lattice of boxes, each as large as its share of the quadrangle and weighted
+// with the tents of the texels around. Neighbouring bundles sum to a plateau. `units` is the flux in units of the sums;
+// `noise` in 0..1 decides how fractions are rounded, so that none is lost on average.
+fn splat(q: Quad, bounds: vec4f, units: vec3f, kind: u32, noise: f32) {
     let low = min(min(q.a, q.b), min(q.c, q.d));
     let size = max(max(q.a, q.b), max(q.c, q.d)) - low;
     let base = floor(low - 0.5);
@@ -63,7 +101,7 @@ fn splat(q: Quad, point: ChartPoint, units: vec3f, kind: u32, noise: f32) {
         let whole = floor(value);
         rest = value - whole;
         if any(whole != vec3f(0.0)) {
-            let texel = clamp(base + vec2f(f32(k % 4u), f32(k / 4u)), point.low, point.high - 1.0);
+            let texel = clamp(base + vec2f(f32(k % 4u), f32(k / 4u)), bounds.xy, bounds.zw - 1.0);
             let place = SUMS_PER_TEXEL * (u32(texel.y) * landing.width + u32(texel.x)) + 3u * kind;
             atomicAdd(&flux_sums[place], i32(whole.x));
             atomicAdd(&flux_sums[place + 1u], i32(whole.y));
