@@ -17,6 +17,7 @@ from pellucid.surroundings.charts import Reach
 from pellucid.techniques.eikonal.bodies import Body
 from pellucid.techniques.eikonal.brdf_tables import BrdfTables, spreading
 from pellucid.techniques.eikonal.hulls import Hull, hull_of
+from pellucid.techniques.eikonal.joining import Joiner, Placed
 from pellucid.techniques.eikonal.layouts import DrawParams, LookCount, LookRay, VolumeParams
 from pellucid.techniques.eikonal.light import LightSimulator, check_lights, flux_bound
 from pellucid.techniques.eikonal.prepare import Prepared, prepare
@@ -51,19 +52,25 @@ Rectangle = tuple[int, int, int, int]
 
 @dataclass
 class _Loaded:
-    """A volume on the device, shared by the objects that place it. `source` keeps the identity that it is found by."""
+    """A volume on the device, shared by the objects that place it. `source` keeps the identity that it is found by.
+
+    within : (4, 4), from the volume to the frame of the first of its objects.
+    """
 
     source: Any
     prepared: Prepared
     textures: VolumeTextures
     tight: Box
+    within: np.ndarray
     hulls: dict[Any, tuple[Any, Hull]] = field(default_factory=dict)  # by proxies, kept so that no id is used again
 
-    def hull(self, item: RefractiveVolume) -> Hull:
-        """Where rays of the picture begin, for one object with this volume."""
-        key = (item.proxy if isinstance(item.proxy, str) else id(item.proxy), item.center_m)
+    def hull(self, objects: Sequence[RefractiveVolume]) -> Hull:
+        """Where rays of the picture begin; what several objects are composed to has a box."""
+        item = objects[0]
+        proxy, center_m = (item.proxy, item.center_m) if len(objects) == 1 else ("box", (0.0, 0.0, 0.0))
+        key = (proxy if isinstance(proxy, str) else id(proxy), center_m)
         if key not in self.hulls:
-            self.hulls[key] = item.proxy, hull_of(self.prepared, item.proxy, item.center_m)
+            self.hulls[key] = proxy, hull_of(self.prepared, proxy, center_m)
         return self.hulls[key][1]
 
 
@@ -85,6 +92,7 @@ class EikonalTechnique:
         self._lists: dict[str, Any] = {}
         self._draws: list[Any] = []
         self._relay = Relay(device)
+        self._joiner = Joiner()
         self._capacity = 0
         self._simulator: LightSimulator | None = None
         self._lit: dict[int, Any] = {}
@@ -106,20 +114,19 @@ class EikonalTechnique:
 
     def prepare(self, objects: Sequence[RefractiveVolume], surroundings: Surroundings) -> None:
         """Make every volume resident, drop those that are gone, and write the parameters of each object."""
-        wanted = {_key(item) for item in objects}
-        self._loaded = {key: volume for key, volume in self._loaded.items() if key in wanted}
         self._brdfs.prepare(objects)
+        placed = [self._joiner.place(group) for group in self._joiner.groups(objects)]
+        wanted = {what.key for what in placed}
+        self._loaded = {key: volume for key, volume in self._loaded.items() if key in wanted}
         bodies = []
-        for number, item in enumerate(objects):
-            key = _key(item)
-            if key not in self._loaded:
-                self._loaded[key] = self._load(item)
+        for number, what in enumerate(placed):
+            if what.key not in self._loaded:
+                self._loaded[what.key] = self._load(what)
             before = self.bodies[number] if number < len(self.bodies) else None
-            volume = self._loaded[key]
+            volume = self._loaded[what.key]
             # Alone in the scene it may have all of its box: rays are not sent from body to body.
-            box = volume.tight if len(objects) > 1 else whole_box(volume.prepared)
-            body = self._place(item, volume, box, before)
-            bodies.append(body)
+            box = volume.tight if len(placed) > 1 else whole_box(volume.prepared)
+            bodies.append(self._place(what, volume, box, before))
         self.bodies = bodies
         for body in bodies:
             self._write_parameters(body, surroundings)
@@ -211,22 +218,25 @@ class EikonalTechnique:
             progress=progress,
         )
 
-    def _load(self, item: RefractiveVolume) -> _Loaded:
+    def _load(self, what: Placed) -> _Loaded:
+        item, (volume, world) = what.objects[0], what.volume()
         prepared = prepare(
-            item.volume,
+            volume,
             item.boundary,
             item.smoothing_voxels,
             item.gradient,
             item.quality.method,
-            item.dispersion,
-            item.spectral,
+            any(o.dispersion for o in what.objects),
+            max(o.spectral for o in what.objects),
         )
-        return _Loaded(item.volume, prepared, upload(self.device, prepared), tight_box(prepared))
+        source = [o.volume for o in what.objects]
+        return _Loaded(source, prepared, upload(self.device, prepared), tight_box(prepared), world)
 
-    def _place(self, item: RefractiveVolume, volume: _Loaded, box: Box, before: Body | None) -> Body:
-        """The body of an object; buffers of the one before are used again if it has the same volume."""
+    def _place(self, what: Placed, volume: _Loaded, box: Box, before: Body | None) -> Body:
+        """The body of objects; buffers of the one before are used again if it has the same volume."""
+        world, quality = what.frame @ volume.within, what.objects[0].quality
         placed = Body(
-            (item,), volume.prepared, volume.textures, [], item.object_to_world(), box, item.quality, volume.hull(item)
+            what.objects, volume.prepared, volume.textures, [], world, box, quality, volume.hull(what.objects)
         )
         if before is not None and before.textures is volume.textures:
             placed.uniforms = before.uniforms
@@ -402,12 +412,6 @@ def _around(rectangles: Sequence[Rectangle]) -> Rectangle:
 
 def _overlap(a: Rectangle, b: Rectangle) -> bool:
     return all(a[k] < b[k] + b[k + 2] and b[k] < a[k] + a[k + 2] for k in range(2))
-
-
-def _key(item: RefractiveVolume) -> Any:
-    """What decides how a volume is prepared; two objects that agree in it share their textures."""
-    how = (item.boundary, item.smoothing_voxels, item.gradient, item.quality.method, item.dispersion, item.spectral)
-    return (id(item.volume), *how)
 
 
 def _screen_rectangle(body: Body, camera: Camera, size: tuple[int, int]) -> Rectangle | None:
