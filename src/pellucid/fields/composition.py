@@ -7,7 +7,7 @@ absorption, scattering and emission of later parts stop at its bodies. Elsewhere
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any
 
@@ -172,10 +172,12 @@ class _Grid:
     low: Array
     voxel: float
     shape: tuple[int, int, int]
+    outside: dict[Any, np.ndarray] = field(default_factory=dict)  # distances to boxes, as they are found
 
     @classmethod
     def around(cls, parts: Sequence[Part], matters: Sequence[Matter]) -> _Grid:
-        finest = min(parts, key=lambda part: part.voxel_ws_m)
+        limit = 1.05 * min(part.voxel_ws_m for part in parts)
+        finest = [part for part in parts if part.voxel_ws_m <= limit][-1]  # of equal ones the largest
         frame = finest.world.copy()
         frame[:3, :3] /= finest.scale
         corners = []
@@ -223,14 +225,18 @@ class _Grid:
         block = self._block(part)
         begin = np.array([s.start for s in block])
         out = np.full(self.shape, outside, np.float32)
-        out[block] = affine_transform(
-            np.asarray(values, np.float32),
-            matrix,
-            offset + matrix @ begin,
-            output_shape=tuple(s.stop - s.start for s in block),
-            output=np.float32,
-            order=order,
-            mode="nearest",
+        out[block] = (
+            values.flat[0]
+            if values.min() == values.max()
+            else affine_transform(
+                np.asarray(values, np.float32),
+                matrix,
+                offset + matrix @ begin,
+                output_shape=tuple(s.stop - s.start for s in block),
+                output=np.float32,
+                order=order,
+                mode="nearest",
+            )
         )
         if order == 1:  # the fields end with the box
             out[block][self._outside_box(part)[block] > 0.0] = outside
@@ -249,13 +255,17 @@ class _Grid:
 
     def _outside_box(self, part: Part) -> np.ndarray:
         """Distance to the box of a part, metres of the result; 0 within."""
+        key = part.volume.extent_m, part.world.tobytes()
+        if key in self.outside:
+            return self.outside[key]
         rows, half = self.to_object(part), 0.5 * np.array(part.volume.extent_m)
         z, y, x = (np.arange(n, dtype=np.float32) for n in self.shape)
         square = np.zeros(self.shape, np.float32)
         for row, limit in zip(rows.astype(np.float32), half, strict=True):
             at = (row[2] * z + row[3])[:, None, None] + (row[1] * y)[:, None] + row[0] * x
             square += np.maximum(np.abs(at, out=at) - np.float32(limit * (1.0 + 1e-6)), 0.0) ** 2
-        return np.sqrt(square) * np.float32(part.scale)
+        self.outside[key] = np.sqrt(square) * np.float32(part.scale)
+        return self.outside[key]
 
     def distance(self, part: Part, sdf: np.ndarray) -> np.ndarray:
         """Signed distance to a body of a part, metres of the result.
