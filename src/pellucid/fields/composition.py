@@ -328,7 +328,9 @@ def _smooth(parts: Sequence[Part], grid: _Grid) -> Volume:
             covered = _covered(grid.distance(part, sdf), grid.voxel)
         else:
             covered = held.astype(np.float32)
-        total = total + matter.free[..., None] * delta
+        # The index itself counts, not how it differs from an ambient medium that is not there.
+        shifted = delta + (raw.ambient_n - ambient) * covered[..., None]
+        total = total + matter.free[..., None] * shifted
         matter.add(part, raw, matter.free, held)
         matter.free = matter.free * (1.0 - covered)
     delta = np.broadcast_to(total, (*grid.shape, 3 if by_channel else 1))
