@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from pellucid.scene import Camera, LightQuality, RefractiveVolume
     from pellucid.surroundings import Surroundings
 
-# A picture is drawn in bands of rows, so that the lists of waiting rays keep to 100 MB.
+# A picture is drawn in bands of rows, so that the lists of waiting rays keep to 150 MB.
 BAND_PIXELS = 1 << 18
 # Rays that wait are counted apart from lobes that do.
 LOOK_QUEUES = 2
@@ -220,9 +220,10 @@ class EikonalTechnique:
 
     def _load(self, what: Placed) -> _Loaded:
         item, (volume, world) = what.objects[0], what.volume()
+        composed = "sharp" if volume.regions else "smooth"
         prepared = prepare(
             volume,
-            item.boundary,
+            item.boundary if len(what.objects) == 1 else composed,
             item.smoothing_voxels,
             item.gradient,
             item.quality.method,
