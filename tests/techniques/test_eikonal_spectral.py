@@ -41,6 +41,16 @@ def test_lossless_glass_vanishes_in_coloured_light_at_every_wavelength(renderer,
     assert np.isfinite(frame.depth).any() and error < 5e-3, f"off by {error:.1e}"
 
 
+def test_bodies_of_different_numbers_of_wavelengths_vanish_together(renderer, flint):
+    bodies = [
+        pl.RefractiveVolume(flint, scale=0.6, position=(0.01, 0.0, 0.03), spectral=6),
+        pl.RefractiveVolume(flint, scale=0.6, position=(-0.01, 0.0, -0.03)),
+    ]
+    frame = renderer.render(scene(*bodies), SIZE, samples=2)
+    error = np.abs(frame.radiance - (0.3, 1.0, 0.6)).max()
+    assert np.isfinite(frame.depth).any() and error < 5e-3, f"off by {error:.1e}"
+
+
 def test_matter_without_dispersion_looks_the_same(renderer):
     ball = pl.Volume.from_sdf(shapes.sphere(0.04), 1.6, 48, 0.1)
     around = pl.Environment.studio()

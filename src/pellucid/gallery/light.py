@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pellucid.fields import shapes
-from pellucid.scene import Camera, DirectionalLight, Environment, Mesh, Quality, RefractiveVolume, Scene
+from pellucid.scene import Camera, DirectionalLight, Environment, LightQuality, Mesh, Quality, RefractiveVolume, Scene
 
 from . import stage
 from .picture import Picture
@@ -15,7 +15,8 @@ def dispersion_prism() -> Scene:
     """A standing prism of N-SF66 before a curved screen of white bars on black.
 
     Its edge of 45 deg turns light by 50 deg at least deviation, and blue 2.3 deg more than red. A turn of half
-    the deviation makes the viewer look through it just there.
+    the deviation makes the viewer look through it just there. Eight wavelengths, others in
+    each sample, make a spectrum without bands; the light on the floor can be coarser.
     """
     edge, side, tall, plinth, bevel = np.radians(45.0), 0.048, 0.06, 0.03, 0.0008
     x, z = side * np.cos(0.5 * edge), side * np.sin(0.5 * edge)
@@ -24,7 +25,8 @@ def dispersion_prism() -> Scene:
     prism = RefractiveVolume.from_sdf(
         body, "N-SF66", 128, (1.13 * x, 2.25 * z, 1.08 * tall),
         position=(0.0, plinth + 0.5 * tall + stage.GAP_M, 0.0), rotation=(-90.0, 25.0, 0.0),
-        quality=Quality(bounces=6, min_weight=0.02),
+        spectral=8, quality=Quality(bounces=6, min_weight=0.02),
+        light=LightQuality(front_voxels=4.0, split_voxels=4.0, bounces=4, min_flux=0.02, caustic_texels=128),
     )  # fmt: skip
     floor = stage.table(0.3, stage.stone(512, (0.10, 0.10, 0.11), 0.1), 4.0, roughness=0.7)
     block = Mesh.box((0.075, plinth, 0.06), position=(0.0, 0.5 * plinth, 0.0), rotation=(0.0, 25.0, 0.0),
