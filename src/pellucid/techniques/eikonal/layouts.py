@@ -90,6 +90,7 @@ LightParams = struct(
         ("faces", ("vec4u", 6)),  # face (2 axis + side), tiles along both edges, number of the first tile
         ("grid", "vec3u"),  # voxels of the fluence
         ("batch_first", "u32"),
+        ("cells", "vec3u"),  # of the direction of light
         ("batch_count", "u32"),
         ("capacity", "u32"),
         ("out_capacity", "u32"),
@@ -103,7 +104,6 @@ LightParams = struct(
         ("fluence_per_quantum", "f32"),
         ("total_quanta", "f32"),
         ("intensity_quanta", "f32"),
-        ("intensity_direction", "f32"),
     ]
 )
 
@@ -123,7 +123,7 @@ LightPatch = struct(
         ("p_1", "vec3f"),
         ("is_ray", "u32"),  # all corners in one place
         ("p_2", "vec3f"),
-        ("pad_2", "u32"),
+        ("breadth", "f32"),  # of what a ray stands for, object metres
         ("p_3", "vec3f"),
         ("pad_3", "u32"),
         ("flux", "vec3f"),

@@ -43,7 +43,8 @@ class Irradiance:
 
     fluence : (Z, Y, X, 3) float32, radiant power that crosses a small ball at each voxel, per area of its
         cross-section: in a parallel beam the irradiance of a surface that faces it. RGB, in the units of the lights.
-    direction : (Z, Y, X, 3) float32, mean direction of travel in object space; its length, 0 to 1, says how parallel.
+    direction : (Z, Y, X, 3) float32, mean direction of travel in object space, over 2 x 2 x 2 voxels; its length,
+        0 to 1, says how parallel light is.
     flux_in, flux_absorbed, flux_out, flux_ended : (3,) float64, radiant power that entered the box, was absorbed or
         scattered in it, left it, and was given up (too weak, too many bounces, lists full); they sum to nothing.
     patches : how many patches were followed.
@@ -218,10 +219,11 @@ class LightSimulator:
 
     def _reserve(self, grid: tuple[int, int, int], deposits: bool, outgoing: bool) -> None:
         voxels = int(np.prod(grid)) if deposits else 1
+        cells = int(np.prod(cells_of(grid))) if deposits else 1
         sizes = {
             "counters": 16 * (GENERATIONS + 1) + 128,
             "fluence": 12 * voxels,
-            "directions": 12 * voxels,
+            "directions": 16 * cells,
             "patches a": LightPatch.itemsize * CAPACITY,
             "patches b": LightPatch.itemsize * CAPACITY,
             "outgoing": OutPatch.itemsize * (CAPACITY if outgoing else 1),
@@ -247,13 +249,14 @@ class LightSimulator:
     def read(self) -> tuple[np.ndarray, np.ndarray]:
         """Fluence and mean direction, (Z, Y, X, 3) float32 each, of the last run."""
         x, y, z = self._grid
+        i, j, k = cells_of(self._grid)
         sums = self.device.read(self._buffers["fluence"], np.int32, (z, y, x, 3)).astype(np.float32)
-        ways = self.device.read(self._buffers["directions"], np.int32, (z, y, x, 3)).astype(np.float32)
-        fluence = sums * float(self._record["fluence_per_quantum"])
-        lit = sums.mean(axis=-1, keepdims=True)
-        turn = np.where(lit > 0.5, ways / np.maximum(lit, 1.0), 0.0)
+        ways = self.device.read(self._buffers["directions"], np.int32, (k, j, i, 4)).astype(np.float32)
+        turn = ways[..., :3] / np.maximum(ways[..., 3:], 1.0)
         turn /= np.maximum(np.linalg.norm(turn, axis=-1, keepdims=True), 1.0)
-        return fluence, turn
+        for axis, (cells, voxels) in enumerate(((k, z), (j, y), (i, x))):
+            turn = np.take(turn, ((np.arange(voxels) + 0.5) * cells / voxels).astype(int), axis=axis)
+        return sums * float(self._record["fluence_per_quantum"]), turn
 
     def field(self, before: LightField | None = None) -> LightField:
         """Fluence and direction of the last run as textures; those of `before` are written again if they fit."""
@@ -357,6 +360,12 @@ def grid_of(prepared: Prepared) -> tuple[int, int, int]:
     return x, y, z
 
 
+def cells_of(grid: tuple[int, int, int]) -> tuple[int, int, int]:
+    """Cells (x, y, z) of the direction of light: two voxels wide."""
+    x, y, z = (-(-n // 2) for n in grid)
+    return x, y, z
+
+
 def _record(
     prepared: Prepared,
     grid: tuple[int, int, int],
@@ -372,7 +381,7 @@ def _record(
     total_flux = max(sum(s.total_flux for s in sources), patch_flux)
     longest = float(np.linalg.norm(voxel_m))
     out["box_half"] = box
-    out["grid"] = grid
+    out["grid"], out["cells"] = grid, cells_of(grid)
     out["capacity"] = out["out_capacity"] = CAPACITY
     out["bounces"] = quality.bounces
     out["most_layers"] = 2 * max(grid) + 16

@@ -38,7 +38,7 @@ struct Counters {
 @group(0) @binding(22) var<storage, read> patches: array<LightPatch>;
 @group(0) @binding(23) var<storage, read_write> next_patches: array<LightPatch>;
 @group(0) @binding(24) var<storage, read_write> counters: Counters;
-// Fixed-point numbers, of which sums do not depend on the order: rgb of fluence, and xyz of its direction
+// Fixed-point numbers, of which sums do not depend on the order: rgb of fluence; xyz of its direction, and their weight
 @group(0) @binding(25) var<storage, read_write> fluence: array<atomic<i32>>;
 @group(0) @binding(26) var<storage, read_write> directions: array<atomic<i32>>;
 @group(0) @binding(27) var<storage, read_write> outgoing: array<OutPatch>;

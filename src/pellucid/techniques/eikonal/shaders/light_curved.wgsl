@@ -73,7 +73,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                 for (var k = 0u; k < 4u; k++) { end_x[k] -= back; }
             }
             let before = flux;
-            travel(tube_between(written_x, end_x, flux, tube.is_ray != 0u), &flux, of_region);
+            travel(tube_between(written_x, end_x, flux, tube), &flux, of_region);
             add_flux(TOTAL_ABSORBED, before - flux);
             written = middle(end_x);
             written_x = end_x;

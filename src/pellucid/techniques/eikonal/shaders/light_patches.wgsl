@@ -50,14 +50,16 @@ fn edges_of(x: array<vec3f, 4>) -> mat2x3f {
     return mat2x3f(0.5 * (x[1] - x[0] + x[3] - x[2]), 0.5 * (x[2] - x[0] + x[3] - x[1]));
 }
 
-// The tube from these corners to those. A single ray stands for a voxel's breadth of them.
-fn tube_between(x: array<vec3f, 4>, y: array<vec3f, 4>, flux: vec3f, is_ray: bool) -> Tube {
+// The tube of a patch between these corners and those. A ray stands for the breadth of what it came from.
+fn tube_between(x: array<vec3f, 4>, y: array<vec3f, 4>, flux: vec3f, of_patch: LightPatch) -> Tube {
     let weak = !worth_dividing(flux);
-    if (is_ray) {
-        let broad = mat2x3f(vec3f(volume.voxel), vec3f(volume.voxel));
-        return Tube(x[0], y[0], broad, broad, weak);
-    }
-    return Tube(middle(x), middle(y), edges_of(x), edges_of(y), weak);
+    if (of_patch.is_ray == 0u) { return Tube(middle(x), middle(y), edges_of(x), edges_of(y), weak); }
+    let way = y[0] - x[0];
+    let aside = select(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), abs(way.x) > max(abs(way.y), abs(way.z)));
+    let first = cross(way, aside) / max(length(cross(way, aside)), 1e-20);
+    let second = cross(way / max(length(way), 1e-20), first);
+    let broad = mat2x3f(of_patch.breadth * first, of_patch.breadth * second);
+    return Tube(x[0], y[0], broad, broad, weak);
 }
 
 // Area of the tube's cross-section, object metres squared.
@@ -86,7 +88,7 @@ fn worth_dividing(flux: vec3f) -> bool {
 fn emit(place: u32, x: array<vec3f, 4>, p: array<vec3f, 4>, flux: vec3f, from_patch: LightPatch) {
     next_patches[place] = LightPatch(
         x[0], from_patch.region, x[1], from_patch.signs, x[2], from_patch.level, x[3], from_patch.bounces,
-        p[0], from_patch.touched, p[1], from_patch.is_ray, p[2], 0u, p[3], 0u, flux);
+        p[0], from_patch.touched, p[1], from_patch.is_ray, p[2], from_patch.breadth, p[3], 0u, flux);
 }
 
 // Two children of what lies between these corners, cut across the longer of its edges. False when there is no room for them.
@@ -113,12 +115,19 @@ fn divide(x: array<vec3f, 4>, p: array<vec3f, 4>, edges: vec2f, flux: vec3f, fro
     return true;
 }
 
+// A ray stands for a tube as broad as the one that it came from.
+fn breadth_of(x: array<vec3f, 4>, p: array<vec3f, 4>, from_patch: LightPatch) -> f32 {
+    let edges = cut_edges(x, normalize(middle(p)));
+    return select(min(max(edges.x, edges.y), volume.voxel), from_patch.breadth, from_patch.is_ray != 0u);
+}
+
 // One ray for the whole tube: it is narrow, or weak, and its corners do not stay together.
 fn collapse(x: array<vec3f, 4>, p: array<vec3f, 4>, flux: vec3f, from_patch: LightPatch) -> bool {
     let place = reserve(generation.index + 2u, 1u, light.capacity);
     if (place == NO_ROOM) { return false; }
     var ray = from_patch;
     ray.is_ray = 1u;
+    ray.breadth = breadth_of(x, p, from_patch);
     let at = middle(x);
     let way = 0.25 * (length(p[0]) + length(p[1]) + length(p[2]) + length(p[3])) * normalize(middle(p));
     emit(place, array<vec3f, 4>(at, at, at, at), array<vec3f, 4>(way, way, way, way), flux, ray);
@@ -133,6 +142,7 @@ fn scatter_corners(x: array<vec3f, 4>, p: array<vec3f, 4>, flux: vec3f, from_pat
     var ray = from_patch;
     ray.level += select(2u, 0u, from_patch.is_ray != 0u);
     ray.is_ray = 1u;
+    ray.breadth = breadth_of(x, p, from_patch);
     for (var k = 0u; k < rays; k++) {
         emit(place + k, array<vec3f, 4>(x[k], x[k], x[k], x[k]), array<vec3f, 4>(p[k], p[k], p[k], p[k]), flux / f32(rays), ray);
     }

@@ -15,10 +15,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (any(at >= size)) { return; }
     let voxel = 3u * ((at.z * size.y + at.y) * size.x + at.x);
     let sum = vec3f(f32(fluence[voxel]), f32(fluence[voxel + 1u]), f32(fluence[voxel + 2u]));
-    let way = vec3f(f32(directions[voxel]), f32(directions[voxel + 1u]), f32(directions[voxel + 2u]));
-    let lit = (sum.x + sum.y + sum.z) / 3.0;
-    let turn = way / max(lit, 1.0);
-    let bounded = turn / max(length(turn), 1.0);
     textureStore(fluence_image, at, vec4f(sum * light.fluence_per_quantum, 0.0));
-    textureStore(direction_image, at, vec4f(select(vec3f(0.0), bounded, lit > 0.5), 0.0));
+    if (any(at >= light.cells)) { return; }
+    let cell = 4u * ((at.z * light.cells.y + at.y) * light.cells.x + at.x);
+    let way = vec3f(f32(directions[cell]), f32(directions[cell + 1u]), f32(directions[cell + 2u]));
+    let turn = way / max(f32(directions[cell + 3u]), 1.0);
+    textureStore(direction_image, at, vec4f(turn / max(length(turn), 1.0), 0.0));
 }

@@ -42,19 +42,23 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     // Where on the way the tube gets too wide: widths of straight rays grow no faster than linearly between two of them.
     let limit = light.split_width;
     let widens = to_width > limit && worth_dividing(flux);
-    let part = select(1.0, clamp((limit - from_width) / max(to_width - from_width, 1e-12), 0.0, 1.0), widens);
+    var part = vec4f(select(1.0, clamp((limit - from_width) / max(to_width - from_width, 1e-12), 0.0, 1.0), widens));
+    // What a surface stretches is divided before it: there a bundle is still straight, and its children meet the true surface.
+    let stretched = edges_behind();
+    let stretches = !widens && end_event[0] == INTERFACE && tube.is_ray == 0u && worth_dividing(flux) && max(stretched.x, stretched.y) > limit;
+    if (stretches) { part = before_surface(); }
     var at = array<vec3f, 4>();
-    for (var k = 0u; k < 4u; k++) { at[k] = mix(corner_x[k], end_x[k], part); }
+    for (var k = 0u; k < 4u; k++) { at[k] = mix(corner_x[k], end_x[k], part[k]); }
     let before = flux;
-    travel(tube_between(corner_x, at, flux, tube.is_ray != 0u), &flux, region_extinction(tube.region));
+    travel(tube_between(corner_x, at, flux, tube), &flux, region_extinction(tube.region));
     add_flux(TOTAL_ABSORBED, before - flux);
     var next = tube;
     if (AMBIENT_MATTER && tube.touched == UNTOUCHED) {
         put_out(OUT_BLOCKED, corner_x, corner_p, before);
         next.touched = TOUCHED;
     }
-    if (widens) {
-        if (!divide(at, corner_p, cut_edges(at, d), flux, next)) { add_flux(TOTAL_ENDED, flux); }
+    if (widens || stretches) {
+        if (!divide(at, corner_p, select(cut_edges(at, d), stretched, stretches), flux, next)) { add_flux(TOTAL_ENDED, flux); }
         return;
     }
     switch end_event[0] {
@@ -72,6 +76,26 @@ fn end_x_before() -> array<vec3f, 4> {
     var x = array<vec3f, 4>();
     for (var k = 0u; k < 4u; k++) { x[k] = end_x[k] - 1e-3 * volume.voxel * normalize(corner_p[k]); }
     return x;
+}
+
+// Edges of the cut of the patch behind the surface that its corners stand at.
+fn edges_behind() -> vec2f {
+    let first = split_at(end_crossing[0]);
+    let last = split_at(end_crossing[3]);
+    let through = first.refracted + last.refracted;
+    let back = first.reflected + last.reflected;
+    return cut_edges(end_x, normalize(select(through, back, first.total || last.total)));
+}
+
+const BEFORE_SURFACE = 0.25;   // voxels
+
+// Shares of the ways of all corners up to one front a little before the surface.
+fn before_surface() -> vec4f {
+    let ways = vec4f(
+        distance(corner_x[0], end_x[0]), distance(corner_x[1], end_x[1]),
+        distance(corner_x[2], end_x[2]), distance(corner_x[3], end_x[3]));
+    let shortest = min(min(ways.x, ways.y), min(ways.z, ways.w)) - BEFORE_SURFACE * volume.voxel;
+    return max(shortest, 0.0) / max(ways, vec4f(1e-12));
 }
 
 // Follow corner k to a surface, an opaque voxel, a mesh, or out of the box.

@@ -5,7 +5,7 @@
 
 // Rounding to whole quanta hands its remainder on, so that sums stay true.
 var<private> fluence_carry: vec3f = vec3f(0.5);
-var<private> direction_carry: vec3f = vec3f(0.5);
+var<private> direction_carry: vec4f = vec4f(0.5);
 
 // Axes in the order (across, across, along).
 fn turned(v: vec3f, axis: u32) -> vec3f {
@@ -28,7 +28,7 @@ struct Tube {
     b: vec3f,
     edges_a: mat2x3f,     // of its cross-section, at a
     edges_b: mat2x3f,     // and at b
-    weak: bool,           // carries so little that one random point of each layer stands for it
+    weak: bool,           // carries so little that random points of it stand for it
 }
 
 // Carries flux through a tube. Within one layer of voxels across its main axis the tube is a rectangle of known length, shared by
@@ -52,17 +52,19 @@ fn travel(tube: Tube, flux: ptr<function, vec3f>, of_region: vec3f) {
     let forward = run.z >= 0.0;
     let bounds = turned(size, axis);
     var t = 0.0;
+    var waiting = vec4f(0.0);
     // Layers are counted, not compared: rounding must not make a track stand still.
-    var layer = select(ceil(start.z) - 1.0, floor(start.z), forward);
+    let hop = select(-1.0, 1.0, forward);
+    var border = select(ceil(start.z) - 1.0, floor(start.z) + 1.0, forward);
     for (var k = 0u; k < light.most_layers && t < 1.0; k++) {
-        let border = select(layer, layer + 1.0, forward);
         let until = select(clamp((border - start.z) / run.z, t, 1.0), 1.0, reach < 1e-9);
-        layer += select(-1.0, 1.0, forward);
+        border += hop;
         let part = until - t;
-        let from_t = t;
-        let at = start + (0.5 * (t + until)) * run;
+        let random = random_pair(vec2u(bitcast<u32>(start.x + start.y), bitcast<u32>(start.z + t)));
+        let along = mix(t, until, select(0.5, random.x, tube.weak));
+        let at = start + along * run;
         let length_m = part * length_os * volume.scale;
-        let depth = extinction_at(a + (0.5 * (t + until)) * (b - a), of_region) * length_m;
+        let depth = extinction_at(a + along * (b - a), of_region) * length_m;
         let kept = exp(-depth);
         let mean = *flux * select((1.0 - kept) / max(depth, vec3f(1e-3)), 1.0 - 0.5 * depth, depth < vec3f(1e-3));
         *flux *= kept;
@@ -70,16 +72,35 @@ fn travel(tube: Tube, flux: ptr<function, vec3f>, of_region: vec3f) {
         // Light may begin and end outside the grid, where a box that is itself the surface has a margin.
         let within = all(at >= vec3f(0.0)) && all(at <= bounds);
         if (DEPOSITS && part > 0.0 && within) {
-            let along = 0.5 * (t + from_t);
-            var place = TubePlace(at, mix(size_a.size, size_b.size, along), 4u);
+            var place = TubePlace(at, mix(size_a.size, size_b.size, along));
             if (tube.weak) {
-                let random = random_pair(vec2u(bitcast<u32>(at.x + at.y), bitcast<u32>(at.z))) - 0.5;
-                let off = random.x * mix(size_a.u, size_b.u, along) + random.y * mix(size_a.v, size_b.v, along);
-                place = TubePlace(vec3f(clamp(at.xy + off, vec2f(0.0), bounds.xy - 1e-3), at.z), vec2f(1e-3), 1u);
+                let across = random_pair(bitcast<vec2u>(at.xy) ^ vec2u(k)) - 0.5;
+                let off = across.x * mix(size_a.u, size_b.u, along) + across.y * mix(size_a.v, size_b.v, along);
+                place = TubePlace(vec3f(clamp(at.xy + off, vec2f(0.0), bounds.xy - 1e-3), at.z), vec2f(1.0));
             }
-            deposit(mean, length_m, d, place, bounds, axis);
+            deposit(mean, length_m, place, bounds, axis);
+            let weight = dot(abs(weighed(mean)), vec3f(1.0)) * (length_m * light.quanta_per_flux_m / 3.0);
+            waiting += weight * vec4f(d, 1.0);
+            if (tube.weak || (k & 1u) == 1u || t >= 1.0) {
+                deposit_direction(waiting, a + along * (b - a));
+                waiting = vec4f(0.0);
+            }
         }
     }
+}
+
+// Light comes from about one direction in several voxels: their mean is kept in larger cells, and written for two layers at once.
+fn deposit_direction(way: vec4f, x: vec3f) {
+    let cells = vec3f(light.cells);
+    let at = vec3u(clamp(floor((x / (2.0 * volume.half_extent) + 0.5) * cells), vec3f(0.0), cells - 1.0));
+    let cell = 4u * ((at.z * light.cells.y + at.y) * light.cells.x + at.x);
+    let sum = way + direction_carry;
+    let whole = floor(sum);
+    direction_carry = sum - whole;
+    atomicAdd(&directions[cell], i32(whole.x));
+    atomicAdd(&directions[cell + 1u], i32(whole.y));
+    atomicAdd(&directions[cell + 2u], i32(whole.z));
+    atomicAdd(&directions[cell + 3u], i32(whole.w));
 }
 
 // What a layer cuts out of a tube, in voxels: edges of the cut, and of the upright rectangle that stands for it.
@@ -97,7 +118,7 @@ fn footprint(edges: mat2x3f, axis: u32, size: vec3f, run: vec3f) -> Cut {
     let second = turned(edges[1] / (2.0 * volume.half_extent) * size, axis);
     let u = first.xy - slope * first.z;
     let v = second.xy - slope * second.z;
-    return Cut(u, v, clamp(sqrt(u * u + v * v), vec2f(1e-3), vec2f(1.0)));
+    return Cut(u, v, clamp(sqrt(u * u + v * v), vec2f(1e-3), vec2f(1.25)));
 }
 
 // Two numbers in 0..1 [jarzynski2020, pcg2d].
@@ -115,10 +136,9 @@ fn random_pair(seed: vec2u) -> vec2f {
 struct TubePlace {
     at: vec3f,            // grid, axes turned
     size: vec2f,          // of the rectangle, voxels
-    voxels: u32,          // that share it
 }
 
-fn deposit(carried: vec3f, length_m: f32, d: vec3f, place: TubePlace, bounds: vec3f, axis: u32) {
+fn deposit(carried: vec3f, length_m: f32, place: TubePlace, bounds: vec3f, axis: u32) {
     let flux = weighed(carried);
     let at = place.at;
     let size = place.size;
@@ -132,32 +152,21 @@ fn deposit(carried: vec3f, length_m: f32, d: vec3f, place: TubePlace, bounds: ve
         // E = flux / area of the tube, and of several the strongest.
         let strongest = vec3i(flux * (light.intensity_quanta / max(size.x * size.y, 1e-6)));
         let voxel = 3u * (here + select(x.x, x.y, share.x >= 0.5) + select(y.x, y.y, share.y >= 0.5));
-        if (atomicMax(&fluence[voxel + 1u], strongest.y) < strongest.y) {
-            atomicMax(&fluence[voxel], strongest.x);
-            atomicMax(&fluence[voxel + 2u], strongest.z);
-            atomicStore(&directions[voxel], i32(d.x * light.intensity_direction));
-            atomicStore(&directions[voxel + 1u], i32(d.y * light.intensity_direction));
-            atomicStore(&directions[voxel + 2u], i32(d.z * light.intensity_direction));
-        }
+        atomicMax(&fluence[voxel], strongest.x);
+        atomicMax(&fluence[voxel + 1u], strongest.y);
+        atomicMax(&fluence[voxel + 2u], strongest.z);
         return;
     }
     let tracks = flux * (length_m * light.quanta_per_flux_m);
-    let way = d * ((tracks.x + tracks.y + tracks.z) / 3.0);
-    for (var k = 0u; k < place.voxels; k++) {
+    for (var k = 0u; k < 4u; k++) {
         let weights = select(1.0 - share, share, vec2<bool>((k & 1u) != 0u, k > 1u));
-        let weight = select(weights.x * weights.y, 1.0, place.voxels == 1u);
+        let weight = weights.x * weights.y;
         let voxel = 3u * (here + x[k & 1u] + y[k >> 1u]);
         let track = tracks * weight + fluence_carry;
         let whole = floor(track);
         fluence_carry = track - whole;
-        let turn = way * weight + direction_carry;
-        let whole_turn = floor(turn);
-        direction_carry = turn - whole_turn;
         atomicAdd(&fluence[voxel], i32(whole.x));
         atomicAdd(&fluence[voxel + 1u], i32(whole.y));
         atomicAdd(&fluence[voxel + 2u], i32(whole.z));
-        atomicAdd(&directions[voxel], i32(whole_turn.x));
-        atomicAdd(&directions[voxel + 1u], i32(whole_turn.y));
-        atomicAdd(&directions[voxel + 2u], i32(whole_turn.z));
     }
 }
