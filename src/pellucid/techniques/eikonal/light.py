@@ -31,10 +31,12 @@ if TYPE_CHECKING:
 
 GENERATIONS = 64
 CAPACITY = 1 << 17  # patches in a list
-BATCH = 1 << 15  # patches of the front that are followed at a time
+OUT_CAPACITY = 3 << 16  # bundles that leave in one batch
+BATCH = 1 << 14  # patches of the front that are followed at a time
 # Patches that carry less of the front's largest than this are not divided; they leave a track of random points instead.
 DIVIDE_ABOVE = 1.0 / 20.0
-TOTALS = ("flux_in", "flux_absorbed", "flux_out", "flux_ended", "flux_lent")
+TOTALS = ("flux_in", "flux_absorbed", "flux_out", "flux_ended", "flux_lent", "flux_unsent")
+TOTAL_WORDS = 40
 
 
 @dataclass(frozen=True)
@@ -85,7 +87,7 @@ class LightSimulator:
         self.device = device
         self._kernels: dict[Any, ComputeKernel] = {}
         self._buffers: dict[str, Any] = {}
-        blank = np.zeros((GENERATIONS + 1) * 4 + 32, np.uint32)
+        blank = np.zeros((GENERATIONS + 1) * 4 + TOTAL_WORDS, np.uint32)
         blank[1 : (GENERATIONS + 1) * 4 : 4] = blank[2 : (GENERATIONS + 1) * 4 : 4] = 1
         self._blank = device.buffer(blank, "storage", "blank counters")
         self._generations = [
@@ -193,6 +195,7 @@ class LightSimulator:
         encoder.copy_buffer_to_buffer(counters, 16 * GENERATIONS, arguments, 0, 16)
         last = {**bindings, "patches": ping, "next_patches": pong, "generation": self._generations[GENERATIONS - 1]}
         self._kernel("light_end", {}).run((0, 0, 0), last, encoder, indirect=(arguments, 0))
+        self._kernel("light_end", {}, "count").run((-(-GENERATIONS // 64), 1, 1), last, encoder)
         if land is not None:
             encoder.copy_buffer_to_buffer(counters, 0, self._outgoing_queue, 0, 16)
             land(encoder, self._buffers["outgoing"], self._outgoing_queue)
@@ -221,12 +224,12 @@ class LightSimulator:
         voxels = int(np.prod(grid)) if deposits else 1
         cells = int(np.prod(cells_of(grid))) if deposits else 1
         sizes = {
-            "counters": 16 * (GENERATIONS + 1) + 128,
+            "counters": 16 * (GENERATIONS + 1) + 4 * TOTAL_WORDS,
             "fluence": 12 * voxels,
             "directions": 16 * cells,
             "patches a": LightPatch.itemsize * CAPACITY,
             "patches b": LightPatch.itemsize * CAPACITY,
-            "outgoing": OutPatch.itemsize * (CAPACITY if outgoing else 1),
+            "outgoing": OutPatch.itemsize * (OUT_CAPACITY if outgoing else 1),
         }
         for name, size in sizes.items():
             if name not in self._buffers or self._buffers[name].size < size:
@@ -237,8 +240,12 @@ class LightSimulator:
         self._lists = self._buffers["patches a"], self._buffers["patches b"]
 
     def totals(self) -> tuple[dict[str, np.ndarray], int]:
-        """Where the flux went, (3,) float64 each, and how many patches were followed; waits for the device."""
-        words = self.device.read(self._buffers["counters"], np.uint32, (GENERATIONS + 1) * 4 + 32)[-32:]
+        """Where the flux went, (3,) float64 each, and how many patches were followed; waits for the device.
+
+        ``flux_unsent`` is the part of ``flux_out`` that found no room in the list for the surroundings.
+        """
+        size = (GENERATIONS + 1) * 4 + TOTAL_WORDS
+        words = self.device.read(self._buffers["counters"], np.uint32, size)[-TOTAL_WORDS:]
         low, high = words[0::2].astype(np.int64), words[1::2].astype(np.int64)
         sums = (low + (high << 32)).astype(np.float64)
         per_quantum = 1.0 / float(self._record["total_quanta"])
@@ -282,10 +289,11 @@ class LightSimulator:
         )
         return before
 
-    def _kernel(self, name: str, constants: dict[str, float]) -> ComputeKernel:
-        key = (name, *sorted(constants.items()))
+    def _kernel(self, name: str, constants: dict[str, float], entry: str = "main") -> ComputeKernel:
+        key = (name, entry, *sorted(constants.items()))
         if key not in self._kernels:
-            self._kernels[key] = ComputeKernel(self.device, f"techniques/eikonal/shaders/{name}", constants=constants)
+            module = f"techniques/eikonal/shaders/{name}"
+            self._kernels[key] = ComputeKernel(self.device, module, entry, constants)
         return self._kernels[key]
 
 
@@ -301,6 +309,7 @@ def illuminate(
     check_lights(body.prepared, body.world, lights)
     technique.follow_light(body, lights, surroundings, progress=progress)
     totals, patches = technique.simulator.totals()
+    del totals["flux_unsent"]
     shape = body.objects[0].volume.shape
     fluence, direction = (_inner(field, shape) for field in technique.simulator.read())
     seconds = time.perf_counter() - begun
@@ -382,7 +391,7 @@ def _record(
     longest = float(np.linalg.norm(voxel_m))
     out["box_half"] = box
     out["grid"], out["cells"] = grid, cells_of(grid)
-    out["capacity"] = out["out_capacity"] = CAPACITY
+    out["capacity"], out["out_capacity"] = CAPACITY, OUT_CAPACITY
     out["bounces"] = quality.bounces
     out["most_layers"] = 2 * max(grid) + 16
     out["patch_flux"] = patch_flux

@@ -17,7 +17,8 @@ const TOTAL_ABSORBED = 3u;
 const TOTAL_OUT = 6u;
 const TOTAL_ENDED = 9u;
 const TOTAL_LENT = 12u;          // more than was there, against what ended by chance
-const TOTAL_PATCHES = 15u;
+const TOTAL_UNSENT = 15u;        // left, but there was no room to tell the surroundings
+const TOTAL_PATCHES = 18u;
 
 // A list of patches: the workgroups that it fills, and how long it is.
 struct PatchCount {
@@ -30,7 +31,7 @@ struct PatchCount {
 // The first list is what leaves the volume; list g + 1 is generation g.
 struct Counters {
     lists: array<PatchCount, 65>,       // light.GENERATIONS + 1
-    totals: array<atomic<u32>, 32>,     // pairs of a low and a high word
+    totals: array<atomic<u32>, 40>,     // light.TOTAL_WORDS: pairs of a low and a high word
 }
 
 @group(0) @binding(20) var<uniform> light: LightParams;
@@ -66,6 +67,7 @@ fn add_quanta(total: u32, value: u32) {
 
 // The same for a number that may be negative: the two words are a 64-bit integer.
 fn add_signed(total: u32, value: i32) {
+    if (value == 0) { return; }
     add_quanta(total, u32(value));
     if (value < 0) { atomicAdd(&counters.totals[2u * total + 1u], 0xffffffffu); }
 }

@@ -26,7 +26,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (id.x >= atomicLoad(&counters.lists[generation.index + 1u].count)) { return; }
     let tube = patches[id.x];
     unpack(tube);
-    add_quanta(TOTAL_PATCHES, 1u);
     end_x = corner_x;
     end_p = corner_p;
     p_calm = corner_p;

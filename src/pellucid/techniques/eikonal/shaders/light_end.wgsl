@@ -1,4 +1,4 @@
-// What is still on its way after the last generation is given up, and said so.
+// The end of a batch: what is still on its way is given up, and said so; patches are counted.
 
 //!import techniques/eikonal/shaders/light_bindings
 
@@ -6,4 +6,10 @@
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if (id.x >= atomicLoad(&counters.lists[generation.index + 1u].count)) { return; }
     add_flux(TOTAL_ENDED, patches[id.x].flux);
+}
+
+@compute @workgroup_size(64)
+fn count(@builtin(global_invocation_id) id: vec3u) {
+    if (id.x > generation.index) { return; }
+    add_quanta(TOTAL_PATCHES, atomicLoad(&counters.lists[id.x + 1u].count));
 }

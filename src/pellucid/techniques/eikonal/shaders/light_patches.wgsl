@@ -171,7 +171,10 @@ fn go_on(x: array<vec3f, 4>, p: array<vec3f, 4>, flux: vec3f, from_patch: LightP
 fn put_out(kind: u32, x: array<vec3f, 4>, p: array<vec3f, 4>, flux: vec3f) {
     if (!OUTGOING) { return; }
     let place = reserve(0u, 1u, light.out_capacity);
-    if (place == NO_ROOM) { return; }
+    if (place == NO_ROOM) {
+        add_flux(TOTAL_UNSENT, flux);
+        return;
+    }
     var out = OutPatch();
     out.kind = kind;
     out.corner_0 = point_to_world(x[0]);

@@ -9,7 +9,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (id.x >= atomicLoad(&counters.lists[generation.index + 1u].count)) { return; }
     let tube = patches[id.x];
     unpack(tube);
-    add_quanta(TOTAL_PATCHES, 1u);
     for (var k = 0u; k < 4u; k++) {
         // A single ray has four corners in one place.
         if (k == 0u || tube.is_ray == 0u) {
