@@ -271,22 +271,21 @@ class LightSimulator:
         if before is None or before.grid != grid:
             made = [
                 self.device.texture(
-                    size=grid, format="rgba16float", dimension="3d", usage=("sample", "storage"), label=n
+                    size=size, format="rgba16float", dimension="3d", usage=("sample", "storage"), label=label
                 )
-                for n in ("fluence", "light direction")
+                for label, size in (("fluence", grid), ("light direction", cells_of(grid)))
             ]
             before = LightField(made[0], made[1], grid)
         record = self.device.buffer(self._record.reshape(1), "uniform", "light")
-        self._kernel("light_resolve", {}).run(
-            (-(-grid[0] // 64), grid[1], grid[2]),
-            {
-                "light": record,
-                "fluence": self._buffers["fluence"],
-                "directions": self._buffers["directions"],
-                "fluence_image": before.fluence,
-                "direction_image": before.direction,
-            },
-        )
+        bindings = {
+            "light": record,
+            "fluence": self._buffers["fluence"],
+            "directions": self._buffers["directions"],
+            "fluence_image": before.fluence,
+            "direction_image": before.direction,
+        }
+        for entry, (x, y, z) in (("main", grid), ("turn", cells_of(grid))):
+            self._kernel("light_resolve", {}, entry).run((-(-x // 64), y, z), bindings)
         return before
 
     def _kernel(self, name: str, constants: dict[str, float], entry: str = "main") -> ComputeKernel:

@@ -9,13 +9,16 @@
 @group(0) @binding(4) var direction_image: texture_storage_3d<rgba16float, write>;
 
 @compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3u) {
+fn main(@builtin(global_invocation_id) at: vec3u) {
     let size = light.grid;
-    let at = vec3u(id.x, id.y, id.z);
     if (any(at >= size)) { return; }
     let voxel = 3u * ((at.z * size.y + at.y) * size.x + at.x);
     let sum = vec3f(f32(fluence[voxel]), f32(fluence[voxel + 1u]), f32(fluence[voxel + 2u]));
     textureStore(fluence_image, at, vec4f(sum * light.fluence_per_quantum, 0.0));
+}
+
+@compute @workgroup_size(64)
+fn turn(@builtin(global_invocation_id) at: vec3u) {
     if (any(at >= light.cells)) { return; }
     let cell = 4u * ((at.z * light.cells.y + at.y) * light.cells.x + at.x);
     let way = vec3f(f32(directions[cell]), f32(directions[cell + 1u]), f32(directions[cell + 2u]));

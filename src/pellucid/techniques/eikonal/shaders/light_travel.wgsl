@@ -53,6 +53,7 @@ fn travel(tube: Tube, flux: ptr<function, vec3f>, of_region: vec3f) {
     let bounds = turned(size, axis);
     var t = 0.0;
     var waiting = vec4f(0.0);
+    var cell = cell_at(a);
     // Layers are counted, not compared: rounding must not make a track stand still.
     let hop = select(-1.0, 1.0, forward);
     var border = select(ceil(start.z) - 1.0, floor(start.z) + 1.0, forward);
@@ -80,20 +81,28 @@ fn travel(tube: Tube, flux: ptr<function, vec3f>, of_region: vec3f) {
             }
             deposit(mean, length_m, place, bounds, axis);
             let weight = dot(abs(weighed(mean)), vec3f(1.0)) * (length_m * light.quanta_per_flux_m / 3.0);
-            waiting += weight * vec4f(d, 1.0);
-            if (tube.weak || (k & 1u) == 1u || t >= 1.0) {
-                deposit_direction(waiting, a + along * (b - a));
+            let next = cell_at(a + along * (b - a));
+            if (next != cell) {
+                deposit_direction(waiting, cell);
                 waiting = vec4f(0.0);
+                cell = next;
             }
+            waiting += weight * vec4f(d, 1.0);
         }
     }
+    if (DEPOSITS) { deposit_direction(waiting, cell); }
 }
 
-// Light comes from about one direction in several voxels: their mean is kept in larger cells, and written for two layers at once.
-fn deposit_direction(way: vec4f, x: vec3f) {
+// Light comes from about one direction in several voxels: their mean is kept in larger cells.
+fn cell_at(x: vec3f) -> u32 {
     let cells = vec3f(light.cells);
     let at = vec3u(clamp(floor((x / (2.0 * volume.half_extent) + 0.5) * cells), vec3f(0.0), cells - 1.0));
-    let cell = 4u * ((at.z * light.cells.y + at.y) * light.cells.x + at.x);
+    return (at.z * light.cells.y + at.y) * light.cells.x + at.x;
+}
+
+// What a track has carried through one cell, and in which direction.
+fn deposit_direction(way: vec4f, number: u32) {
+    let cell = 4u * number;
     let sum = way + direction_carry;
     let whole = floor(sum);
     direction_carry = sum - whole;
