@@ -35,6 +35,7 @@ def eikonal(progress: Progress = lambda share: None, repeat: int = 5) -> dict[st
         "adaptive": ("smooth", Quality(step_voxels=1.5), "jumps through homogeneous matter, steps up to 1.5 voxels"),
         "adaptive_default": ("smooth", Quality(), "the same, steps up to half a voxel"),
         "sharp": ("sharp", Quality(), "surfaces by sphere tracing, a tree of rays; has no error of steps"),
+        "crystal": ("crystal", Quality(), "the same, of a crystal with the indices of calcite: two kinds of rays"),
     }
     glass_ball = _ball_scene()
     scenes = {name: glass_ball(boundary, quality) for name, (boundary, quality, _) in variants.items()}
@@ -50,7 +51,7 @@ def eikonal(progress: Progress = lambda share: None, repeat: int = 5) -> dict[st
     memory = renderer.nbytes / 2**20
     rows = []
     for name, (boundary, _, note) in variants.items():
-        error = None if boundary == "sharp" else _difference(pictures[name], reference, covered)
+        error = None if boundary in ("sharp", "crystal") else _difference(pictures[name], reference, covered)
         rows.append(_row(name, times[name], times["euler_half_voxel"], error, note))
     rows[-1]["note"] += f"; {memory:.0f} MiB on the device"
     rows += _preparation_rows()
@@ -59,17 +60,22 @@ def eikonal(progress: Progress = lambda share: None, repeat: int = 5) -> dict[st
 
 
 def _ball_scene() -> Callable[[str, Any], Any]:
-    """Scenes of one and the same ball by boundary and quality."""
+    """Scenes of one and the same ball by boundary (or as a crystal) and quality."""
     from pellucid.fields.shapes import sphere
     from pellucid.fields.volume import Volume
+    from pellucid.media import uniaxial
     from pellucid.scene import Camera, Environment, RefractiveVolume, Scene
 
     volume = Volume.from_sdf(sphere(0.045), 1.5, RESOLUTION, 0.1)
+    spar = Volume.from_sdf(sphere(0.045), uniaxial(1.6584, 1.4864), RESOLUTION, 0.1, optic_axis=(1.0, 2.0, 3.0))
     environment = Environment.studio()
     camera = Camera(position=(0.03, 0.06, 0.2), target=(0.0, 0.0, 0.0), fov_deg=32.0)
 
     def scene(boundary: str, quality: Any) -> Any:
-        ball = RefractiveVolume(volume, boundary=boundary, quality=quality)
+        if boundary == "crystal":
+            ball = RefractiveVolume(spar, quality=quality)
+        else:
+            ball = RefractiveVolume(volume, boundary=boundary, quality=quality)
         return Scene(camera=camera, environment=environment, objects=[ball], tone_mapping="linear")
 
     return scene

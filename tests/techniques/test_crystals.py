@@ -270,3 +270,30 @@ def test_a_twisted_crystal_vanishes_in_a_furnace(renderer):
     )
     frame = renderer.render(scene(pl.RefractiveVolume(volume, rotation=(10, 30, 0))), (80, 60))
     assert np.abs(frame.radiance - 1.0).max() < 5e-3
+
+
+# ---- wavelengths and other bodies ---------------------------------------------------------------------------
+
+
+def test_many_wavelengths_average_to_the_same_crystal(renderer):
+    """The extraordinary index follows the wavelengths of each sample; without dispersion nothing changes."""
+    spar = slab((0.6, 0.2, 0.8), pl.media.get("calcite"))
+    item = pl.RefractiveVolume(spar, rotation=(20, 30, 0), spectral=6)
+    assert np.abs(renderer.render(scene(item), (60, 45), samples=2).radiance - 1.0).max() < 5e-3
+    floor = pl.Mesh.checkerboard(0.5, position=(0, -0.04, 0))
+    three, many = (
+        renderer.render(scene(floor, item.replace(spectral=count)), (60, 45), samples=4).radiance for count in (0, 6)
+    )
+    assert np.median(np.abs(three - many)) < 1e-3 and abs(three.mean() - many.mean()) < 0.01
+
+
+def test_a_crystal_is_seen_through_glass(renderer):
+    """Two bodies, one behind the other: the tourmaline behind the index-matched pane keeps its colour."""
+    sigma = np.array([100.0, 10.0, 50.0])
+    gem = pl.media.uniaxial(1.0 + 1e-7, 1.0 + 1e-7, sigma, 2.0 * sigma)
+    stone = pl.RefractiveVolume(slab((0, 1, 0), gem))
+    pane = pl.RefractiveVolume(slab(None, pl.media.constant(1.0 + 1e-7)), position=(0, 0, 0.05))
+    truth = 0.5 * np.exp(-sigma * THICK) + 0.5 * np.exp(-2.0 * sigma * THICK)
+    for objects in ((stone, pane), (pane, stone)):
+        frame = renderer.render(scene(*objects, camera=FLAT), (8, 6))
+        assert np.abs(frame.radiance / truth - 1.0).max() < 2e-3

@@ -116,7 +116,7 @@ class RefractiveVolume(SceneObject):
         ambient_n: float = 1.0,
         *,
         rounding_voxels: float = 0.0,
-        optic_axis: Sequence[float] | None = None,
+        optic_axis: Sequence[float] | np.ndarray | None = None,
         progress: Callable[[float], None] | None = None,
         **placement: Any,
     ) -> Self:
@@ -221,7 +221,7 @@ class RefractiveVolume(SceneObject):
         resolution: int,
         extent_m: Extent,
         ambient_n: float = 1.0,
-        optic_axis: Sequence[float] | None = None,
+        optic_axis: Sequence[float] | np.ndarray | None = None,
         **placement: Any,
     ) -> Self:
         """A body given by its signed distance ``f(x, y, z)`` in metres, negative inside; see ``Volume.from_sdf``.
@@ -240,7 +240,7 @@ class RefractiveVolume(SceneObject):
         resolution: int,
         extent_m: Extent,
         ambient_n: float = 1.0,
-        optic_axes: Sequence[Sequence[float] | None] = (),
+        optic_axes: Sequence[Sequence[float] | np.ndarray | None] = (),
         **placement: Any,
     ) -> Self:
         """Up to four bodies as (signed distance, medium); the first that holds a point owns it.
