@@ -297,3 +297,26 @@ def test_a_crystal_is_seen_through_glass(renderer):
     for objects in ((stone, pane), (pane, stone)):
         frame = renderer.render(scene(*objects, camera=FLAT), (8, 6))
         assert np.abs(frame.radiance / truth - 1.0).max() < 2e-3
+
+
+def test_a_crystal_in_smoke_keeps_its_axis(renderer):
+    """Volumes that reach into one another become one, whose axes of space are those of another body."""
+    smoke = pl.RefractiveVolume.from_array(
+        np.ones((16, 16, 16), np.float32),
+        0.05,
+        absorption=np.full((16, 16, 16, 3), 1e-4, np.float32),
+        rotation=(0, 40, 0),
+        boundary="smooth",
+    )
+    spar = pl.RefractiveVolume(
+        pl.Volume.from_sdf(shapes.sphere(0.015), "calcite", 48, 0.04, optic_axis=(1, 2, 0)),
+        rotation=(20, 0, 50),
+        scale=1.2,
+        dispersion=False,
+    )
+    floor = pl.Mesh.checkerboard(0.5, squares=40, position=(0, -0.04, 0))
+    alone, within = (renderer.render(scene(floor, *objects), (80, 60)).radiance for objects in ((spar,), (spar, smoke)))
+    error = np.abs(alone - within)
+    assert np.quantile(error, 0.97) < 0.02 and np.median(error) < 1e-4, np.quantile(error, [0.5, 0.9, 0.97, 1.0])
+    turned = renderer.render(scene(floor, spar.replace(rotation=(20, 90, 50))), (80, 60)).radiance
+    assert np.abs(alone - turned).mean() > 3.0 * error.mean(), "another axis is another picture"

@@ -129,7 +129,7 @@ def _reaches_into(a: Matter, a_world: Array, b: Matter, b_world: Array) -> bool:
 def can_compose(parts: Sequence[Part]) -> bool:
     """Whether one volume can hold them all: sharp surfaces or an index on voxels, not both, and few enough regions.
 
-    An index that varies within a sharp body is possible in the first part only; crystals are not possible.
+    An index that varies within a sharp body is possible in the first part only, an optic axis that varies nowhere.
     """
     sharp = [part for part in parts if part.has_surface]
     if any(part.bends and not part.has_surface for part in parts) and sharp:
@@ -138,11 +138,9 @@ def can_compose(parts: Sequence[Part]) -> bool:
         return False
     if any(part.volume.delta_n is not None for part in sharp[1:]):
         return False
-    if any(getattr(r, "optic_axis", None) is not None for part in parts for r in part.volume.regions):
+    if any(part.volume.optic_axis is not None or part.volume.delta_n_e is not None for part in sharp):
         return False
-    if any(getattr(part.volume, "optic_axis", None) is not None for part in parts):
-        return False
-    regions = [region for part in sharp for region in part.volume.regions]
+    regions = [_turned(region, part.world) for part in sharp for region in part.volume.regions]
     joined = sum(_alike(a, b) for a, b in pairwise(regions))
     return len(regions) - joined <= MOST_REGIONS
 
@@ -299,7 +297,9 @@ def _sharp(parts: Sequence[Part], grid: _Grid) -> Volume:
     for part in parts:
         owned = matter.free.copy()
         nearest = np.full(grid.shape, np.inf, np.float32)
-        for region in part.volume.regions:
+        to_grid = np.linalg.inv(grid.world) @ part.world
+        for body in part.volume.regions:
+            region = _turned(body, to_grid)
             sdf = grid.distance(part, region.sdf)
             np.minimum(nearest, sdf, out=nearest)
             if regions and _alike(regions[-1], region):
@@ -401,11 +401,28 @@ def _covered(sdf: np.ndarray, voxel: float) -> np.ndarray:
 def _of_one_index(volume: Volume) -> Volume:
     def single(region: Region) -> Region:
         medium = region.medium
-        return replace(region, medium=media.constant(medium.n_d, medium.absorption_per_m, medium.name))
+        one = media.constant(medium.n_d, medium.absorption_per_m, medium.name)
+        if medium.extraordinary is not None:
+            other = medium.extraordinary
+            one = media.uniaxial(one.n_d, other.n_d, medium.absorption_per_m, other.absorption_per_m, medium.name)
+        return replace(region, medium=one)
 
     return volume.replace(regions=tuple(single(region) for region in volume.regions))
 
 
 def _alike(a: Region, b: Region) -> bool:
     """Whether nothing tells the insides of two bodies apart."""
-    return (a.medium, a.emission, a.scattering, a.anisotropy) == (b.medium, b.emission, b.scattering, b.anisotropy)
+    if a.optic_axis is None or b.optic_axis is None:
+        parallel = a.optic_axis is b.optic_axis
+    else:
+        parallel = abs(float(np.dot(a.optic_axis, b.optic_axis))) > 1.0 - 1e-12
+    same = (a.medium, a.emission, a.scattering, a.anisotropy) == (b.medium, b.emission, b.scattering, b.anisotropy)
+    return same and parallel
+
+
+def _turned(region: Region, placement: Array) -> Region:
+    """A body whose axis is stated in another frame. placement : (4, 4), its own to the other, uniformly scaled."""
+    if region.optic_axis is None:
+        return region
+    x, y, z = placement[:3, :3] @ region.optic_axis
+    return replace(region, optic_axis=(float(x), float(y), float(z)))
