@@ -320,3 +320,21 @@ def test_a_crystal_in_smoke_keeps_its_axis(renderer):
     assert np.quantile(error, 0.97) < 0.02 and np.median(error) < 1e-4, np.quantile(error, [0.5, 0.9, 0.97, 1.0])
     turned = renderer.render(scene(floor, spar.replace(rotation=(20, 90, 50))), (80, 60)).radiance
     assert np.abs(alone - turned).mean() > 3.0 * error.mean(), "another axis is another picture"
+
+
+def test_crystals_that_join_keep_the_directions_of_their_axes():
+    from pellucid.techniques.eikonal.joining import Joiner
+
+    spar = pl.Volume.from_sdf(shapes.sphere(0.015), "calcite", 24, 0.04, optic_axis=(0.36, 0.48, 0.8))
+    turns = ((20.0, 0.0, 50.0), (0.0, 70.0, 10.0))
+    items = [pl.RefractiveVolume(spar, rotation=turn, position=(0.01 * k, 0, 0)) for k, turn in enumerate(turns)]
+    joiner = Joiner()
+    (group,) = joiner.groups(items)
+    placed = joiner.place(group)
+    volume, to_frame = placed.volume()
+    world = placed.frame @ to_frame
+    found = [world[:3, :3] @ region.optic_axis for region in volume.regions]
+    expected = [item.object_to_world()[:3, :3] @ spar.regions[0].optic_axis for item in items]
+    assert len(found) == 2, "bodies whose axes differ stay two"
+    for axis in expected:
+        assert max(abs(axis @ other) for other in found) > 1.0 - 1e-9
