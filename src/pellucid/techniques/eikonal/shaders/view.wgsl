@@ -140,8 +140,8 @@ fn first_ray(group: vec2u, lane: u32) -> ViewRay {
     return enter(ray.origin, ray.direction, vec3f(1.0), RAY_UNTOUCHED);
 }
 
+// Where rays are relayed: the next of the pixel's rays that enter this body.
 fn next_ray() -> ViewRay {
-    if (!RELAYED) { return ViewRay(); }
     while (rays_left != 0u) {
         let plane = countTrailingZeros(rays_left);
         rays_left &= rays_left - 1u;

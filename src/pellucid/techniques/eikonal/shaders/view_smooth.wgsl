@@ -7,11 +7,13 @@
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     var entry = first_ray(group.xy, lane);
     if (!entry.exists) { return; }
-    while (entry.exists) {
+    loop {
         var seen = Seen(vec3f(0.0), 0.0, false);
         if (entry.meets) { seen = look_through(entry); }
         keep(entry, seen);
+        if (!RELAYED) { break; }
         entry = next_ray();
+        if (!entry.exists) { break; }
     }
     finish_pixel();
 }
