@@ -130,6 +130,19 @@ def test_a_far_body_changes_nothing_where_no_ray_meets_it(renderer, ball):
     assert np.quantile(error, 0.95) < 1e-4 and np.mean(error) < 2e-3
 
 
+def test_a_caustic_stays_where_a_second_body_stands_by(renderer):
+    """The floor lies in the box of the volume, but not in the tighter one that its rays are followed in."""
+    ball = pl.RefractiveVolume.from_sdf(shapes.sphere(0.03), 1.5, 48, 0.1)
+    floor = pl.Mesh.plane(0.6, specular=0.0, position=(0, -0.041, 0))
+    what = scene(floor, ball, camera=pl.Camera(position=(0.05, 0.15, 0.3), target=(0, 0, 0), fov_deg=30))
+    what = what.replace(lights=[pl.DirectionalLight(direction=(0.6, -0.7, 0.4))])
+    focus = (slice(80, 100), slice(84, 116))
+    alone = renderer.render(what, SIZE).radiance[focus].max()
+    beside = ball.replace(position=(0, 0.3, 0), light=pl.LightQuality(caustics=False))
+    two = renderer.render(what.replace(objects=[floor, ball, beside]), SIZE).radiance[focus].max()
+    assert abs(two / alone - 1.0) < 0.02, f"{two:.2f} instead of {alone:.2f}"
+
+
 def test_a_dispersive_body_leaves_the_others_as_they_are(renderer, ball):
     clear = pl.RefractiveVolume(ball, position=(-0.04, 0, 0))
     flint = pl.media.get("N-SF66").with_absorption((0.0, 0.0, 0.0))

@@ -213,7 +213,7 @@ class EikonalTechnique:
             body.quality,
             _look_of(body),
             deposits=deposits,
-            meets_meshes=body.meets_meshes,
+            meets_meshes=_meets_meshes(body, whole_box(body.prepared), surroundings),  # light begins and ends there
             land=surroundings.caustics.land if casts else None,
             progress=progress,
         )
@@ -247,9 +247,7 @@ class EikonalTechnique:
         return placed
 
     def _write_parameters(self, body: Body, surroundings: Surroundings) -> None:
-        around = corners(body.box, 2.0 * body.prepared.voxel) @ body.world[:3, :3].T + body.world[:3, 3]
-        low, high = around.min(axis=0), around.max(axis=0)
-        body.meets_meshes = any((lo <= high).all() and (hi >= low).all() for lo, hi in surroundings.mesh_bounds_ws)
+        body.meets_meshes = _meets_meshes(body, body.box, surroundings)
         self._write_volume(body)
 
     def _write_volume(self, body: Body) -> None:
@@ -389,6 +387,12 @@ class EikonalTechnique:
             module = f"techniques/eikonal/shaders/{name}"
             self._kernels[key] = ComputeKernel(self.device, module, constants=constants, nearest=("screen_color",))
         return self._kernels[key]
+
+
+def _meets_meshes(body: Body, box: Box, surroundings: Surroundings) -> bool:
+    around = corners(box, 2.0 * body.prepared.voxel) @ body.world[:3, :3].T + body.world[:3, 3]
+    low, high = around.min(axis=0), around.max(axis=0)
+    return any((lo <= high).all() and (hi >= low).all() for lo, hi in surroundings.mesh_bounds_ws)
 
 
 def _write_draw(device: Device, buffer: Any, band: Rectangle, weights: np.ndarray, first: bool) -> None:
