@@ -125,7 +125,7 @@ LightPatch = struct(
         ("p_2", "vec3f"),
         ("breadth", "f32"),  # of what a ray stands for, object metres
         ("p_3", "vec3f"),
-        ("pad_3", "u32"),
+        ("begun", "f32"),  # what it carried, brightest channel, when it was last undisturbed
         ("flux", "vec3f"),
     ]
 )

@@ -399,5 +399,7 @@ def _record(
     out["split_width"] = quality.split_voxels * prepared.voxel
     out["quanta_per_flux_m"] = min(2.0**15 / (patch_flux * longest), 2.0**30 / (total_flux * longest))
     out["fluence_per_quantum"] = 1.0 / (float(out["quanta_per_flux_m"]) * float(np.prod(voxel_m)))
+    # Of the intensity law: quanta of fluence for a flux through the cross-section of a voxel
+    out["intensity_quanta"] = 1.0 / (float(out["fluence_per_quantum"]) * float(np.prod(voxel_m)) ** (2.0 / 3.0))
     out["total_quanta"] = 2.0**24 / patch_flux
     return out

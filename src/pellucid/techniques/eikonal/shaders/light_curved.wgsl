@@ -46,15 +46,24 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let at = middle(end_x);
         let way = normalize(middle(end_p));
         let room = intersect_box(at, way, light.box_half).y;
+        let from_x = end_x;
+        let from_edges = cut_edges(end_x, way);
         let moved = step_front(tube, signs, room, graded);
         since_parked += select(0.0, moved, any(parked));
+        let to_edges = cut_edges(end_x, way);
+        let from_width = max(from_edges.x, from_edges.y);
+        let to_width = max(to_edges.x, to_edges.y);
+        // A leap through matter that does not vary goes no farther than the front stays narrow.
+        let overshoots = moved > volume.voxel && to_width > 1.01 * light.split_width && tube.is_ray == 0u && worth_dividing(flux, tube);
+        let part = clamp((1.005 * light.split_width - from_width) / max(to_width - from_width, 1e-12), 0.5 * volume.voxel / moved, 1.0);
+        if (overshoots && !any(parked)) { for (var k = 0u; k < 4u; k++) { end_x[k] = mix(from_x[k], end_x[k], part); } }
         let now = middle(end_x);
         let edges = cut_edges(end_x, way);
         let width = max(edges.x, edges.y);
         let left = room <= 1e-4 * volume.voxel;
         let all_parked = all(parked);
         let parted = any(parked) && !all_parked && since_parked > 2.0 * width + 0.5 * volume.voxel;
-        let too_wide = width > light.split_width && worth_dividing(flux) && !any(parked) && tube.is_ray == 0u;
+        let too_wide = width > light.split_width && worth_dividing(flux, tube) && !any(parked) && tube.is_ray == 0u;
         let opaque_here = BLOCKS && opaque_at(now).a > 0.5;
         let exhausted = steps >= volume.max_steps;
         event = select(event, EXHAUSTED, exhausted);

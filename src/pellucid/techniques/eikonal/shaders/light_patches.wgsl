@@ -52,7 +52,7 @@ fn edges_of(x: array<vec3f, 4>) -> mat2x3f {
 
 // The tube of a patch between these corners and those. A ray stands for the breadth of what it came from.
 fn tube_between(x: array<vec3f, 4>, y: array<vec3f, 4>, flux: vec3f, of_patch: LightPatch) -> Tube {
-    let weak = !worth_dividing(flux);
+    let weak = !worth_dividing(flux, of_patch);
     if (of_patch.is_ray == 0u) { return Tube(middle(x), middle(y), edges_of(x), edges_of(y), weak); }
     let way = y[0] - x[0];
     let aside = select(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), abs(way.x) > max(abs(way.y), abs(way.z)));
@@ -71,24 +71,25 @@ fn between_corners(v: array<vec3f, 4>, at: vec2f) -> vec3f {
     return mix(mix(v[0], v[1], at.x), mix(v[2], v[3], at.x), at.y);
 }
 
-// Light of one patch relative to what it had when it entered, however often it was divided since.
-fn relative(flux: vec3f, level: u32) -> f32 {
-    return largest_of(abs(weighed(flux))) * exp2(f32(level)) / light.patch_flux;
+// Light of one patch relative to what it had when it was undisturbed, however often it was divided since.
+fn relative(flux: vec3f, of_patch: LightPatch) -> f32 {
+    return largest_of(abs(weighed(flux))) * exp2(f32(of_patch.level)) / max(of_patch.begun, 1e-30);
 }
 
 fn largest_of(v: vec3f) -> f32 {
     return max(v.x, max(v.y, v.z));
 }
 
-// Worth dividing: a patch that carries little is left wide, since its streaks cannot be seen.
-fn worth_dividing(flux: vec3f) -> bool {
-    return largest_of(abs(weighed(flux))) > light.divide_above * light.patch_flux;
+// Worth dividing: a patch that carries little is left wide, since its streaks cannot be seen. A front that only spreads, as from a
+// near lamp, is all the light there is, and is always divided.
+fn worth_dividing(flux: vec3f, of_patch: LightPatch) -> bool {
+    return of_patch.touched == UNTOUCHED || largest_of(abs(weighed(flux))) > light.divide_above * of_patch.begun;
 }
 
 fn emit(place: u32, x: array<vec3f, 4>, p: array<vec3f, 4>, flux: vec3f, from_patch: LightPatch) {
     next_patches[place] = LightPatch(
         x[0], from_patch.region, x[1], from_patch.signs, x[2], from_patch.level, x[3], from_patch.bounces,
-        p[0], from_patch.touched, p[1], from_patch.is_ray, p[2], from_patch.breadth, p[3], 0u, flux);
+        p[0], from_patch.touched, p[1], from_patch.is_ray, p[2], from_patch.breadth, p[3], from_patch.begun, flux);
 }
 
 // Two children of what lies between these corners, cut across the longer of its edges. False when there is no room for them.
@@ -96,7 +97,9 @@ fn divide(x: array<vec3f, 4>, p: array<vec3f, 4>, edges: vec2f, flux: vec3f, fro
     let place = reserve(generation.index + 2u, 2u, light.capacity);
     if (place == NO_ROOM) { return false; }
     var child = from_patch;
-    child.level += 1u;
+    let whole = from_patch.touched == UNTOUCHED;
+    child.level += select(1u, 0u, whole);
+    child.begun *= select(1.0, 0.5, whole);
     let half = select(vec2f(1.0, 0.5), vec2f(0.5, 1.0), edges.x >= edges.y);
     let n = vec4f(length(p[0]), length(p[1]), length(p[2]), length(p[3]));
     for (var k = 0u; k < 2u; k++) {
@@ -152,7 +155,7 @@ fn scatter_corners(x: array<vec3f, 4>, p: array<vec3f, 4>, flux: vec3f, from_pat
 // One patch goes on, or its light is given up: too weak, too many bounces, no room. Of weak patches a few go on with the flux of
 // all [arvo1990]; what this adds and takes is accounted for, so that sums stay exact.
 fn go_on(x: array<vec3f, 4>, p: array<vec3f, 4>, flux: vec3f, from_patch: LightPatch) {
-    let strength = relative(flux, from_patch.level);
+    let strength = relative(flux, from_patch);
     if (strength <= 0.0) { return; }
     var place = NO_ROOM;
     let chance = clamp(strength / light.divide_above, 0.0, 1.0);

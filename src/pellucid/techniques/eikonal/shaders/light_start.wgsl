@@ -28,6 +28,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var begun = LightPatch();
     begun.signs = signs_of(distances_at(clamp(middle(corner_x), -light.box_half, light.box_half)));
     begun.region = owner_of(begun.signs);
+    begun.begun = largest_of(abs(weighed(flux)));
     begun.touched = select(UNTOUCHED, TOUCHED, light.inside != 0u);
     var n = 0.0;
     if (SMOOTH) { n = index_at(middle(corner_x)); } else { n = region_index(begun.region, middle(corner_x)); }
