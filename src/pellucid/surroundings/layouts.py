@@ -93,22 +93,26 @@ Light = struct(
 
 OUT_CAUSTIC = 0
 OUT_BLOCKED = 1
+OUT_UNTOUCHED = 2
 
 # A bundle of rays that leaves a volume: four corner rays and the flux that flows between them. Corners in the order
 # (0, 0), (1, 0), (0, 1), (1, 1) of the bundle. OUT_CAUSTIC adds its light to what it lands on; OUT_BLOCKED is light
-# that would have passed had the volume not been there, its flux positive.
+# that would have passed had the volume not been there, its flux positive. OUT_UNTOUCHED is light that goes on as it
+# came: other volumes want to know of it, meshes have it already.
 OutPatch = struct(
     [
         ("corner_0", "vec3f"),  # metres, world space
         ("kind", "u32"),
         ("corner_1", "vec3f"),
-        ("pad_1", "u32"),
+        ("level", "u32"),  # how often it has been divided
         ("corner_2", "vec3f"),
-        ("pad_2", "u32"),
+        ("is_ray", "u32"),  # all corners in one place
         ("corner_3", "vec3f"),
-        ("pad_3", "u32"),
+        ("breadth", "f32"),  # of what a ray stands for, metres
         ("way_0", "vec3f"),  # unit directions in which the light goes
+        ("body", "u32"),  # that it enters next
         ("way_1", "vec3f"),
+        ("begun", "f32"),  # flux that the patch began with at the lamp
         ("way_2", "vec3f"),
         ("way_3", "vec3f"),
         ("flux", "vec3f"),  # radiant power of the bundle

@@ -1,6 +1,7 @@
 // Where the light of a bundle meets the atlas of caustics.
 //!import surroundings/shaders/raycast
 //!import surroundings/shaders/splat
+//!import surroundings/shaders/bundles
 
 @group(0) @binding(2) var<storage, read> outgoing: array<OutPatch>;
 
@@ -22,33 +23,6 @@ fn land_on_plane(bundle: OutPatch, st: vec2f, triangle: u32, point: ChartPoint) 
     let t = triangle_plane_entry(triangle, origin_ws, way_ws).x;
     let at = chart_point(point.chart, origin_ws + t * way_ws).at;
     return select(point.at, at, t > 0.0);
-}
-
-// The ray at a place in 0..1 across a bundle
-fn bundle_point(bundle: OutPatch, st: vec2f) -> vec3f {
-    return mix(mix(bundle.corner_0, bundle.corner_1, st.x), mix(bundle.corner_2, bundle.corner_3, st.x), st.y);
-}
-
-fn bundle_direction(bundle: OutPatch, st: vec2f) -> vec3f {
-    return normalize(mix(mix(bundle.way_0, bundle.way_1, st.x), mix(bundle.way_2, bundle.way_3, st.x), st.y));
-}
-
-fn bundle_corner(bundle: OutPatch, corner: u32) -> vec3f {
-    switch corner {
-        case 0u: { return bundle.corner_0; }
-        case 1u: { return bundle.corner_1; }
-        case 2u: { return bundle.corner_2; }
-        default: { return bundle.corner_3; }
-    }
-}
-
-fn bundle_way(bundle: OutPatch, corner: u32) -> vec3f {
-    switch corner {
-        case 0u: { return bundle.way_0; }
-        case 1u: { return bundle.way_1; }
-        case 2u: { return bundle.way_2; }
-        default: { return bundle.way_3; }
-    }
 }
 
 // Light that no chart receives is counted, so that energy can be checked: in the workgroup first, which is quicker

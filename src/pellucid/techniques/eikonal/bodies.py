@@ -28,6 +28,7 @@ class Body:
     box : its proxy, object metres.
     hull : where rays of the picture begin, within the box.
     quality : how carefully rays are bent.
+    number : its place among the bodies of the scene.
     meets_meshes : opaque meshes reach into its box.
     light : textures "fluence_field" and "light_field" over the prepared box, once light has been followed through it.
     """
@@ -40,5 +41,6 @@ class Body:
     box: Box
     quality: Quality
     hull: Hull
+    number: int = 0
     meets_meshes: bool = False
     light: dict[str, Any] = field(default_factory=dict)

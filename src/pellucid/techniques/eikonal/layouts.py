@@ -87,6 +87,7 @@ LightParams = struct(
         ("casts", "u32"),  # meshes stop it before it arrives
         ("box_half", "vec3f"),  # of the box that the front begins on, object metres
         ("face_count", "u32"),
+        ("box_center", "vec3f"),
         ("faces", ("vec4u", 6)),  # face (2 axis + side), tiles along both edges, number of the first tile
         ("grid", "vec3u"),  # voxels of the fluence
         ("batch_first", "u32"),
@@ -134,6 +135,18 @@ Generation = struct([("index", "u32")])
 
 # Where a body's proxy stands, for rays that look for the next one.
 BodyBox = struct([("object_from_world", "mat4x4f"), ("center", "vec3f"), ("scale", "f32"), ("half", "vec3f")])
+
+# The boxes of the other bodies, for the light that goes from one to another.
+MOST_OTHERS = 15
+OtherBodies = struct(
+    [
+        ("object_from_world", ("mat4x4f", MOST_OTHERS)),
+        ("center", ("vec4f", MOST_OTHERS)),  # w: world metres per object metre
+        ("half", ("vec4f", MOST_OTHERS)),
+        ("number", ("vec4u", MOST_OTHERS)),  # x: among all bodies
+        ("count", "u32"),
+    ]
+)
 
 # mode: of rays through crystals, 0 ordinary, 1 extraordinary.
 TraceParams = struct([("count", "u32"), ("mode", "u32")])

@@ -2,6 +2,9 @@
 
 A front of patches enters the box. Work goes in generations: each takes a list of patches, follows every one to what it
 meets next, leaves its track in the fluence, and writes what becomes of it to the next list. Nothing is read back.
+
+With several bodies, light that leaves one is handed on to the body that it meets next, and begins there again. A front
+begins only where the lamp shines straight on a body: what comes through another body comes from that.
 """
 
 from __future__ import annotations
@@ -17,16 +20,23 @@ from pellucid.errors import SceneError
 from pellucid.gpu import ComputeKernel, Device
 from pellucid.scene import DirectionalLight, LightQuality
 from pellucid.surroundings.layouts import OutPatch
-from pellucid.techniques.eikonal.layouts import Generation, LightParams, LightPatch, LookCount
+from pellucid.techniques.eikonal.layouts import (
+    MOST_OTHERS,
+    Generation,
+    LightParams,
+    LightPatch,
+    LookCount,
+    OtherBodies,
+)
 from pellucid.techniques.eikonal.light_sources import Source, sources_of
 from pellucid.techniques.eikonal.prepare import Prepared
 from pellucid.techniques.eikonal.proxies import whole_box
 from pellucid.techniques.eikonal.resources import constants_of, scale_of
-from pellucid.techniques.eikonal.wavelengths import draws_of
+from pellucid.techniques.eikonal.wavelengths import common_draws, draws_of
 
 if TYPE_CHECKING:
-    from pellucid.scene import Quality
     from pellucid.surroundings import Surroundings
+    from pellucid.techniques.eikonal.bodies import Body
     from pellucid.techniques.eikonal.passes import EikonalTechnique
 
 GENERATIONS = 64
@@ -37,6 +47,9 @@ BATCH = 1 << 14  # patches of the front that are followed at a time
 DIVIDE_ABOVE = 1.0 / 20.0
 TOTALS = ("flux_in", "flux_absorbed", "flux_out", "flux_ended", "flux_lent", "flux_unsent")
 TOTAL_WORDS = 40
+# Light that has gone through so many bodies in a row goes to the meshes; so many bodies light one another at all.
+BODIES_IN_A_ROW = 4
+MOST_BODIES = MOST_OTHERS + 1
 
 
 @dataclass(frozen=True)
@@ -77,6 +90,32 @@ class LightField:
         return {"fluence_field": self.fluence, "light_field": self.direction}
 
 
+@dataclass
+class Lit:
+    """A body that light is followed through.
+
+    quality : how carefully. deposits : fluence is wanted; without, only what leaves.
+    casts : what leaves lands on meshes.
+    """
+
+    body: Body
+    quality: LightQuality
+    deposits: bool = True
+    casts: bool = False
+
+
+@dataclass
+class _Followed:
+    """A body of a run: its parameters, its fronts, and what its light is summed up in."""
+
+    lit: Lit
+    grid: tuple[int, int, int]
+    record: np.ndarray
+    sources: list[Source]
+    sums: dict[str, Any]
+    others: Any
+
+
 class LightSimulator:
     """Follows light through volumes on one device.
 
@@ -87,6 +126,8 @@ class LightSimulator:
         self.device = device
         self._kernels: dict[Any, ComputeKernel] = {}
         self._buffers: dict[str, Any] = {}
+        self._sums: list[dict[str, Any]] = []
+        self._followed: list[_Followed] = []
         blank = np.zeros((GENERATIONS + 1) * 4 + TOTAL_WORDS, np.uint32)
         blank[1 : (GENERATIONS + 1) * 4 : 4] = blank[2 : (GENERATIONS + 1) * 4 : 4] = 1
         self._blank = device.buffer(blank, "storage", "blank counters")
@@ -97,95 +138,155 @@ class LightSimulator:
     @property
     def nbytes(self) -> int:
         """Bytes of GPU memory held."""
-        return sum(buffer.size for buffer in self._buffers.values())
+        return sum(buffer.size for buffers in (self._buffers, *self._sums) for buffer in buffers.values())
 
     def run(
         self,
-        prepared: Prepared,
-        textures: Sequence[dict[str, Any]],
-        uniforms: Sequence[Any],
-        world: np.ndarray,
+        lit: Sequence[Lit],
         lights: Sequence[object],
         surroundings: Surroundings,
-        quality: Quality,
-        light_quality: LightQuality,
-        *,
-        deposits: bool = True,
-        meets_meshes: bool = False,
         land: Callable[[Any, Any, Any], None] | None = None,
         progress: Callable[[float], None] | None = None,
     ) -> None:
-        """Simulate all lights; sums are left in the accumulators for `fluence`, `totals` and `textures`.
+        """Simulate all lights; sums are left in the accumulators for `read`, `totals` and `field`.
 
         Parameters
         ----------
-        textures, uniforms : bindings and VolumeParams of each channel.
-        world : (4, 4) placement, metres.
-        deposits : fluence is wanted; without, only what leaves.
-        land : called with (encoder, outgoing, outgoing_queue) after every batch.
+        lit : bodies that light one another, at most `MOST_BODIES`.
+        land : called with (encoder, outgoing, outgoing_queue) after every batch of a body that casts.
         progress : called with the share that is done.
         """
-        grid = grid_of(prepared)
-        box = whole_box(prepared)[1]
-        scale = scale_of(world)
-        sources = [s for lamp in lights for s in sources_of(lamp, world, box, prepared.voxel, light_quality)]
-        sources = [s for s in sources if s.patch_flux > 0.0]
-        self._reserve(grid, deposits, land is not None)
-        self._grid, self._scale, self._prepared = grid, scale, prepared
-        self._record = _record(prepared, grid, box, scale, sources, light_quality)
+        several = len(lit) > 1
+        self._reserve(several or any(item.casts for item in lit), several)
+        fronts = [_fronts(item, lights) for item in lit]
+        largest = max((s.patch_flux for sources in fronts for s in sources), default=0.0)
+        total = sum(s.total_flux for sources in fronts for s in sources)
+        self._followed = [
+            _Followed(
+                item,
+                grid_of(item.body.prepared),
+                _record(item, sources, largest, total),
+                sources,
+                self._sums_of(number, item),
+                self.device.buffer(_others(lit, item).reshape(1), "uniform", "other bodies"),
+            )
+            for number, (item, sources) in enumerate(zip(lit, fronts, strict=True))
+        ]
         self._clear()
+        if several:
+            draws = common_draws([item.body.prepared for item in lit])
+        else:
+            draws = [((channel,), weights) for channel, weights in draws_of(lit[0].body.prepared)]
         jobs = [
-            (source, draw, first)
-            for draw in draws_of(prepared)
-            for source in sources
+            (number, source, draw, first)
+            for draw in draws
+            for number, followed in enumerate(self._followed)
+            for source in followed.sources
             if _worth(source, draw[1]) > 0.0
             for first in range(0, source.tiles, BATCH)
         ]
-        for number, (source, (channel, weights), first) in enumerate(jobs):
-            params = self._params(source, weights, first)
-            bindings = {
-                **surroundings.bindings,
-                **textures[channel],
-                **self._buffers,
-                "volume": uniforms[channel],
-                "light": self.device.buffer(params.reshape(1), "uniform", "light"),
-            }
-            flags = {"DEPOSITS": deposits, "OUTGOING": land is not None, "MEETS_MESHES": meets_meshes}
-            self._batch(prepared, quality, light_quality, flags, bindings, surroundings, land)
+        for done, (number, source, draw, first) in enumerate(jobs):
+            self._batch(number, source, draw, first, surroundings, land)
             if progress is not None:
                 self.device.wait()
-                progress((number + 1) / len(jobs))
+                progress((done + 1) / len(jobs))
 
     def _batch(
         self,
-        prepared: Prepared,
-        quality: Quality,
-        light_quality: LightQuality,
-        flags: dict[str, bool],
-        bindings: dict[str, Any],
+        number: int,
+        source: Source,
+        draw: tuple[tuple[int, ...], np.ndarray],
+        first: int,
         surroundings: Surroundings,
         land: Callable[[Any, Any, Any], None] | None,
     ) -> None:
-        matter = constants_of(prepared, quality)
+        """A part of a front of one body, and all that becomes of it in the others."""
+        encoder = self.device.wgpu.create_command_encoder()
+        several = len(self._followed) > 1
+        bound = [self._bindings(k, source, draw, first, surroundings) for k in range(len(self._followed))]
+        meshes = {"HAS_MESHES": float(surroundings.triangle_count > 0)}
+        if several:
+            arrivals = [self._buffers["arrivals a"], self._buffers["arrivals b"]]
+            encoder.copy_buffer_to_buffer(self._blank, 0, self._queues, LookCount.itemsize, LookCount.itemsize)
+        followed = self._followed[number]
+        start = self._kernel("light_start", {**self._how(followed), **meshes})
+        self._follow(encoder, followed, bound[number], start, None)
+        if not several:
+            if followed.lit.casts and land is not None:
+                encoder.copy_buffer_to_buffer(followed.sums["counters"], 0, self._outgoing_queue, 0, 16)
+                land(encoder, self._buffers["outgoing"], self._outgoing_queue)
+            self.device.wgpu.queue.submit([encoder.finish()])
+            return
+        self._hand_on(encoder, followed, {**bound[number], "arrivals": arrivals[1]}, meshes, land)
+        for row in range(1, BODIES_IN_A_ROW):
+            arrivals.reverse()
+            encoder.copy_buffer_to_buffer(self._queues, LookCount.itemsize, self._arrivals_queue, 0, LookCount.itemsize)
+            encoder.copy_buffer_to_buffer(self._blank, 0, self._queues, LookCount.itemsize, LookCount.itemsize)
+            for body, bindings in zip(self._followed, bound, strict=True):
+                arriving = {**bindings, "arrivals": arrivals[0], "arrivals_queue": self._arrivals_queue}
+                self._follow(
+                    encoder, body, arriving, self._kernel("light_arrive", self._how(body)), self._arrivals_queue
+                )
+                leaving = {**bindings, "arrivals": arrivals[1]}
+                if row == BODIES_IN_A_ROW - 1:
+                    leaving["others"] = self._no_others
+                self._hand_on(encoder, body, leaving, meshes, land)
+        self.device.wgpu.queue.submit([encoder.finish()])
+
+    def _bindings(
+        self,
+        number: int,
+        source: Source,
+        draw: tuple[tuple[int, ...], np.ndarray],
+        first: int,
+        surroundings: Surroundings,
+    ) -> dict[str, Any]:
+        followed, channel = self._followed[number], draw[0][number]
+        params = _params(followed.record, source, draw[1], first)
+        return {
+            **surroundings.bindings,
+            **followed.lit.body.textures.channels[channel],
+            **self._buffers,
+            **followed.sums,
+            "others": followed.others,
+            "volume": followed.lit.body.uniforms[channel],
+            "light": self.device.buffer(params.reshape(1), "uniform", "light"),
+        }
+
+    def _how(self, followed: _Followed) -> dict[str, float]:
+        """The constants of the kernels that put light on the box of a body."""
+        prepared = followed.lit.body.prepared
+        how = {"GRADED": float(prepared.graded and prepared.sharp), "SMOOTH": float(not prepared.sharp)}
+        return {**how, "OUTGOING": 0.0, "HANDS_ON": float(len(self._followed) > 1)}
+
+    def _follow(
+        self, encoder: Any, followed: _Followed, bindings: dict[str, Any], start: ComputeKernel, waiting: Any
+    ) -> None:
+        """What `start` puts on the box of a body goes through all generations. waiting : its indirect arguments."""
+        body, quality = followed.lit.body, followed.lit.quality
+        prepared, several = body.prepared, len(self._followed) > 1
+        matter = constants_of(prepared, body.quality)
         constants = {
             **{k: v for k, v in matter.items() if k in ("ABSORBS", "SCATTERS", "BLOCKS")},
-            **{name: float(value) for name, value in flags.items()},
-            "INTENSITY": float(light_quality.method == "intensity"),
+            "DEPOSITS": float(followed.lit.deposits),
+            "OUTGOING": float(followed.lit.casts or several),
+            "MEETS_MESHES": float(body.meets_meshes),
+            "HANDS_ON": float(several),
+            "INTENSITY": float(quality.method == "intensity"),
             "AMBIENT_MATTER": float(has_ambient_matter(prepared)),
             "GRADED": float(prepared.graded and prepared.sharp),
         }
-        encoder = self.device.wgpu.create_command_encoder()
-        counters, arguments = self._buffers["counters"], self._arguments
+        counters, arguments = bindings["counters"], self._arguments
         lists = 16 * (GENERATIONS + 1)
         encoder.copy_buffer_to_buffer(self._blank, 0, counters, 0, lists)
         ping, pong = self._lists
-        meshes = float(surroundings.triangle_count > 0)
-        how = {"GRADED": constants["GRADED"], "SMOOTH": float(not prepared.sharp), "OUTGOING": 0.0}
-        start = self._kernel("light_start", {**how, "HAS_MESHES": meshes})
-        first = {**bindings, "patches": pong, "next_patches": ping, "generation": self._generations[0]}
-        start.run((BATCH // 64, 1, 1), first, encoder)
+        begin = {**bindings, "patches": pong, "next_patches": ping, "generation": self._generations[0]}
+        if waiting is None:
+            start.run((BATCH // 64, 1, 1), begin, encoder)
+        else:
+            start.run((0, 0, 0), begin, encoder, indirect=(waiting, 0))
         if prepared.graded:
-            constants |= {"SMOOTH": how["SMOOTH"], "ADAPTIVE": matter["ADAPTIVE"]}
+            constants |= {"SMOOTH": float(not prepared.sharp), "ADAPTIVE": matter["ADAPTIVE"]}
         march = self._kernel("light_curved" if prepared.graded else "light_straight", constants)
         for g in range(GENERATIONS - 1):
             encoder.copy_buffer_to_buffer(counters, 16 * (g + 1), arguments, 0, 16)
@@ -196,78 +297,91 @@ class LightSimulator:
         last = {**bindings, "patches": ping, "next_patches": pong, "generation": self._generations[GENERATIONS - 1]}
         self._kernel("light_end", {}).run((0, 0, 0), last, encoder, indirect=(arguments, 0))
         self._kernel("light_end", {}, "count").run((-(-GENERATIONS // 64), 1, 1), last, encoder)
-        if land is not None:
-            encoder.copy_buffer_to_buffer(counters, 0, self._outgoing_queue, 0, 16)
-            land(encoder, self._buffers["outgoing"], self._outgoing_queue)
-        self.device.wgpu.queue.submit([encoder.finish()])
 
-    def _params(self, source: Source, weights: np.ndarray, first: int) -> np.ndarray:
-        out = self._record.copy()
-        out["position"], out["direction"], out["kind"] = source.position, source.direction, source.kind
-        out["inside"], out["casts"] = source.inside, source.casts
-        # Bundles carry what the lamp sends out: matter takes from that, and what is left is worth its weights.
-        out["power"] = source.power
-        out["weights"][:, :3] = weights.T  # columns
-        out["patch_flux"] *= _worth(source, weights)
-        out["face_count"] = len(source.faces)
-        out["faces"][: len(source.faces)] = source.faces
-        out["batch_first"], out["batch_count"] = first, min(BATCH, source.tiles - first)
-        return out
+    def _hand_on(
+        self,
+        encoder: Any,
+        followed: _Followed,
+        bindings: dict[str, Any],
+        meshes: dict[str, float],
+        land: Callable[[Any, Any, Any], None] | None,
+    ) -> None:
+        """What has left a body goes to the arrivals of others, or lands."""
+        encoder.copy_buffer_to_buffer(followed.sums["counters"], 0, self._outgoing_queue, 0, LookCount.itemsize)
+        encoder.copy_buffer_to_buffer(self._blank, 0, self._queues, 0, LookCount.itemsize)
+        sorting = {**bindings, "outgoing_queue": self._outgoing_queue, "bundle_queues": self._queues}
+        self._kernel("light_hand_on", meshes).run((0, 0, 0), sorting, encoder, indirect=(self._outgoing_queue, 0))
+        if followed.lit.casts and land is not None:
+            land(encoder, self._buffers["landing"], self._queues)
 
     def _clear(self) -> None:
         encoder = self.device.wgpu.create_command_encoder()
-        for name in ("counters", "fluence", "directions"):
-            encoder.clear_buffer(self._buffers[name])
+        for followed in self._followed:
+            for buffer in followed.sums.values():
+                encoder.clear_buffer(buffer)
         self.device.wgpu.queue.submit([encoder.finish()])
 
-    def _reserve(self, grid: tuple[int, int, int], deposits: bool, outgoing: bool) -> None:
-        voxels = int(np.prod(grid)) if deposits else 1
-        cells = int(np.prod(cells_of(grid))) if deposits else 1
+    def _reserve(self, outgoing: bool, several: bool) -> None:
         sizes = {
-            "counters": 16 * (GENERATIONS + 1) + 4 * TOTAL_WORDS,
-            "fluence": 12 * voxels,
-            "directions": 16 * cells,
             "patches a": LightPatch.itemsize * CAPACITY,
             "patches b": LightPatch.itemsize * CAPACITY,
             "outgoing": OutPatch.itemsize * (OUT_CAPACITY if outgoing else 1),
         }
-        for name, size in sizes.items():
-            if name not in self._buffers or self._buffers[name].size < size:
-                self._buffers[name] = self.device.buffer(size, "storage", name)
+        if several:
+            sizes |= dict.fromkeys(("landing", "arrivals a", "arrivals b"), OutPatch.itemsize * OUT_CAPACITY)
+        _grow(self.device, self._buffers, sizes)
         if not hasattr(self, "_arguments"):
             self._arguments = self.device.buffer(LookCount.itemsize, "indirect", "arguments")
             self._outgoing_queue = self.device.buffer(LookCount.itemsize, "indirect", "outgoing queue")
+            self._arrivals_queue = self.device.buffer(LookCount.itemsize, "indirect", "arrivals queue")
+            self._queues = self.device.buffer(2 * LookCount.itemsize, "indirect", "landing and arrivals")
+            self._no_others = self.device.buffer(np.zeros(1, OtherBodies), "uniform", "no other bodies")
         self._lists = self._buffers["patches a"], self._buffers["patches b"]
 
-    def totals(self) -> tuple[dict[str, np.ndarray], int]:
-        """Where the flux went, (3,) float64 each, and how many patches were followed; waits for the device.
+    def _sums_of(self, number: int, lit: Lit) -> dict[str, Any]:
+        grid = grid_of(lit.body.prepared)
+        if len(self._sums) <= number:
+            self._sums.append({})
+        sizes = {
+            "counters": 16 * (GENERATIONS + 1) + 4 * TOTAL_WORDS,
+            "fluence": 12 * (int(np.prod(grid)) if lit.deposits else 1),
+            "directions": 16 * (int(np.prod(cells_of(grid))) if lit.deposits else 1),
+        }
+        _grow(self.device, self._sums[number], sizes)
+        return self._sums[number]
+
+    def totals(self, number: int = 0) -> tuple[dict[str, np.ndarray], int]:
+        """Where the flux of a body went, (3,) float64 each, and how many patches were followed; waits for the device.
 
         ``flux_unsent`` is the part of ``flux_out`` that found no room in the list for the surroundings.
         """
         size = (GENERATIONS + 1) * 4 + TOTAL_WORDS
-        words = self.device.read(self._buffers["counters"], np.uint32, size)[-TOTAL_WORDS:]
+        followed = self._followed[number]
+        words = self.device.read(followed.sums["counters"], np.uint32, size)[-TOTAL_WORDS:]
         low, high = words[0::2].astype(np.int64), words[1::2].astype(np.int64)
         sums = (low + (high << 32)).astype(np.float64)
-        per_quantum = 1.0 / float(self._record["total_quanta"])
+        per_quantum = 1.0 / float(followed.record["total_quanta"])
         flux = {name: sums[3 * k : 3 * k + 3] * per_quantum for k, name in enumerate(TOTALS)}
         flux["flux_ended"] = flux["flux_ended"] - flux.pop("flux_lent")
         return flux, int(sums[3 * len(TOTALS)])
 
-    def read(self) -> tuple[np.ndarray, np.ndarray]:
-        """Fluence and mean direction, (Z, Y, X, 3) float32 each, of the last run."""
-        x, y, z = self._grid
-        i, j, k = cells_of(self._grid)
-        sums = self.device.read(self._buffers["fluence"], np.int32, (z, y, x, 3)).astype(np.float32)
-        ways = self.device.read(self._buffers["directions"], np.int32, (k, j, i, 4)).astype(np.float32)
+    def read(self, number: int = 0) -> tuple[np.ndarray, np.ndarray]:
+        """Fluence and mean direction, (Z, Y, X, 3) float32 each, of a body of the last run."""
+        followed = self._followed[number]
+        x, y, z = followed.grid
+        i, j, k = cells_of(followed.grid)
+        sums = self.device.read(followed.sums["fluence"], np.int32, (z, y, x, 3)).astype(np.float32)
+        ways = self.device.read(followed.sums["directions"], np.int32, (k, j, i, 4)).astype(np.float32)
         turn = ways[..., :3] / np.maximum(ways[..., 3:], 1.0)
         turn /= np.maximum(np.linalg.norm(turn, axis=-1, keepdims=True), 1.0)
         for axis, (cells, voxels) in enumerate(((k, z), (j, y), (i, x))):
             turn = np.take(turn, ((np.arange(voxels) + 0.5) * cells / voxels).astype(int), axis=axis)
-        return sums * float(self._record["fluence_per_quantum"]), turn
+        return sums * float(followed.record["fluence_per_quantum"]), turn
 
-    def field(self, before: LightField | None = None) -> LightField:
-        """Fluence and direction of the last run as textures; those of `before` are written again if they fit."""
-        grid = self._grid
+    def field(self, before: LightField | None = None, number: int = 0) -> LightField:
+        """Fluence and direction in a body of the last run as textures; those of `before` are used again if they fit."""
+        followed = self._followed[number]
+        grid = followed.grid
         if before is None or before.grid != grid:
             made = [
                 self.device.texture(
@@ -276,11 +390,11 @@ class LightSimulator:
                 for label, size in (("fluence", grid), ("light direction", cells_of(grid)))
             ]
             before = LightField(made[0], made[1], grid)
-        record = self.device.buffer(self._record.reshape(1), "uniform", "light")
+        record = self.device.buffer(followed.record.reshape(1), "uniform", "light")
         bindings = {
             "light": record,
-            "fluence": self._buffers["fluence"],
-            "directions": self._buffers["directions"],
+            "fluence": followed.sums["fluence"],
+            "directions": followed.sums["directions"],
             "fluence_image": before.fluence,
             "direction_image": before.direction,
         }
@@ -306,7 +420,8 @@ def illuminate(
     begun = time.perf_counter()
     body = technique.bodies[0]
     check_lights(body.prepared, body.world, lights)
-    technique.follow_light(body, lights, surroundings, progress=progress)
+    lit = Lit(body, body.objects[0].light)
+    technique.simulator.run([lit], lights, surroundings, progress=progress)
     totals, patches = technique.simulator.totals()
     del totals["flux_unsent"]
     shape = body.objects[0].volume.shape
@@ -334,9 +449,37 @@ def _worth(source: Source, weights: np.ndarray) -> float:
 
 def flux_bound(prepared: Prepared, world: np.ndarray, lights: Sequence[object], quality: LightQuality) -> float:
     """Power that the lamps shed on the box of a volume, brightest channel, if nothing is in between."""
-    box = whole_box(prepared)[1]
+    box = whole_box(prepared)
     fronts = (s for lamp in lights for s in sources_of(lamp, world, box, prepared.voxel, quality))
     return sum(front.total_flux for front in fronts)
+
+
+def _fronts(lit: Lit, lights: Sequence[object]) -> list[Source]:
+    """The fronts that carry any light on the box of a body."""
+    body = lit.body
+    voxel = body.prepared.voxel
+    sources = (s for lamp in lights for s in sources_of(lamp, body.world, body.box, voxel, lit.quality))
+    return [source for source in sources if source.patch_flux > 0.0]
+
+
+def _others(lit: Sequence[Lit], own: Lit) -> np.ndarray:
+    """The OtherBodies record of one body among several."""
+    out = np.zeros((), OtherBodies)
+    others = [item.body for item in lit if item is not own]
+    out["count"] = len(others)
+    for k, body in enumerate(others):
+        out["object_from_world"][k] = np.linalg.inv(body.world).T
+        out["center"][k, :3], out["half"][k, :3] = body.box
+        out["center"][k, 3] = scale_of(body.world)
+        out["number"][k, 0] = body.number
+    return out
+
+
+def _grow(device: Device, buffers: dict[str, Any], sizes: dict[str, int]) -> None:
+    """Make the buffers that are missing or too small."""
+    for name, size in sizes.items():
+        if name not in buffers or buffers[name].size < size:
+            buffers[name] = device.buffer(size, "storage", name)
 
 
 def check_lights(prepared: Prepared, world: np.ndarray, lights: Sequence[object]) -> None:
@@ -374,21 +517,19 @@ def cells_of(grid: tuple[int, int, int]) -> tuple[int, int, int]:
     return x, y, z
 
 
-def _record(
-    prepared: Prepared,
-    grid: tuple[int, int, int],
-    box: np.ndarray,
-    scale: float,
-    sources: Sequence[Source],
-    quality: LightQuality,
-) -> np.ndarray:
-    """The parameters that all lights share. Quanta are as fine as the largest sum allows: all flux through a voxel."""
+def _record(lit: Lit, sources: Sequence[Source], largest: float, total: float) -> np.ndarray:
+    """The parameters that all lights share. Quanta are as fine as the largest sum allows: all flux through a voxel.
+
+    largest, total : flux of the largest patch, and of all, on all bodies.
+    """
     out = np.zeros((), LightParams)
-    voxel_m = np.array(prepared.voxel_m) * scale
-    patch_flux = max((s.patch_flux for s in sources), default=1.0)
-    total_flux = max(sum(s.total_flux for s in sources), patch_flux)
+    prepared, quality = lit.body.prepared, lit.quality
+    grid = grid_of(prepared)
+    voxel_m = np.array(prepared.voxel_m) * scale_of(lit.body.world)
+    patch_flux = max((s.patch_flux for s in sources), default=largest or 1.0)
+    total_flux = max(total, patch_flux)
     longest = float(np.linalg.norm(voxel_m))
-    out["box_half"] = box
+    out["box_center"], out["box_half"] = lit.body.box
     out["grid"], out["cells"] = grid, cells_of(grid)
     out["capacity"], out["out_capacity"] = CAPACITY, OUT_CAPACITY
     out["bounces"] = quality.bounces
@@ -401,5 +542,19 @@ def _record(
     out["fluence_per_quantum"] = 1.0 / (float(out["quanta_per_flux_m"]) * float(np.prod(voxel_m)))
     # Of the intensity law: quanta of fluence for a flux through the cross-section of a voxel
     out["intensity_quanta"] = 1.0 / (float(out["fluence_per_quantum"]) * float(np.prod(voxel_m)) ** (2.0 / 3.0))
-    out["total_quanta"] = 2.0**24 / patch_flux
+    out["total_quanta"] = min(2.0**24 / patch_flux, 2.0**30 / max(largest, patch_flux))
+    return out
+
+
+def _params(record: np.ndarray, source: Source, weights: np.ndarray, first: int) -> np.ndarray:
+    out = record.copy()
+    out["position"], out["direction"], out["kind"] = source.position, source.direction, source.kind
+    out["inside"], out["casts"] = source.inside, source.casts
+    # Bundles carry what the lamp sends out: matter takes from that, and what is left is worth its weights.
+    out["power"] = source.power
+    out["weights"][:, :3] = weights.T  # columns
+    out["patch_flux"] *= _worth(source, weights)
+    out["face_count"] = len(source.faces)
+    out["faces"][: len(source.faces)] = source.faces
+    out["batch_first"], out["batch_count"] = first, min(BATCH, source.tiles - first)
     return out

@@ -10,6 +10,7 @@ import numpy as np
 
 from pellucid.errors import SceneError
 from pellucid.scene import AreaLight, DirectionalLight, LightQuality, PointLight
+from pellucid.techniques.eikonal.proxies import Box
 from pellucid.techniques.eikonal.resources import scale_of
 
 # An area light is taken as this many points along each edge.
@@ -36,9 +37,7 @@ class Source:
         return int((self.faces[:, 1] * self.faces[:, 2]).sum())
 
 
-def sources_of(
-    lamp: object, world: np.ndarray, half: np.ndarray, voxel: float, quality: LightQuality
-) -> Iterator[Source]:
+def sources_of(lamp: object, world: np.ndarray, box: Box, voxel: float, quality: LightQuality) -> Iterator[Source]:
     """The fronts of a lamp: one, or one for each point of an area light."""
     inverse = np.linalg.inv(world)
     scale = scale_of(world)
@@ -52,10 +51,10 @@ def sources_of(
 
     if isinstance(lamp, DirectionalLight):
         power = np.asarray(lamp.color, float) * lamp.irradiance
-        yield _front(0, np.zeros(3), way(lamp.direction), power, lamp.cast_shadow, half, voxel, scale, quality)
+        yield _front(0, np.zeros(3), way(lamp.direction), power, lamp.cast_shadow, box, voxel, scale, quality)
     elif isinstance(lamp, PointLight):
         power = np.asarray(lamp.color, float) * lamp.intensity
-        yield _front(1, point(lamp.position), np.zeros(3), power, lamp.cast_shadow, half, voxel, scale, quality)
+        yield _front(1, point(lamp.position), np.zeros(3), power, lamp.cast_shadow, box, voxel, scale, quality)
     elif isinstance(lamp, AreaLight):
         u, v = np.asarray(lamp.edge_u, float), np.asarray(lamp.edge_v, float)
         normal = np.cross(u, v)
@@ -64,7 +63,7 @@ def sources_of(
         for s in steps:
             for t in steps:
                 x = point(np.asarray(lamp.position, float) + s * u + t * v)
-                yield _front(2, x, way(normal), power, lamp.cast_shadow, half, voxel, scale, quality)
+                yield _front(2, x, way(normal), power, lamp.cast_shadow, box, voxel, scale, quality)
 
 
 def _front(
@@ -73,20 +72,22 @@ def _front(
     direction: np.ndarray,
     power: np.ndarray,
     casts: bool,
-    half: np.ndarray,
+    box: Box,
     voxel: float,
     scale: float,
     quality: LightQuality,
 ) -> Source:
-    inside = kind != 0 and bool((np.abs(position) < half).all())
+    center, half = box
+    at = position - center
+    inside = kind != 0 and bool((np.abs(at) < half).all())
     edge = quality.front_voxels * voxel
     rows, first, largest, total = [], 0, 0.0, 0.0
-    stretch = np.ones(3) if inside else _stretch(direction if kind == 0 else position)
+    stretch = np.ones(3) if inside else _stretch(direction if kind == 0 else at)
     for face in range(6):
         axis, side = divmod(face, 2)
         sign = 2.0 * side - 1.0
         across = [(axis + 1) % 3, (axis + 2) % 3]
-        outside = sign * position[axis] > half[axis]
+        outside = sign * at[axis] > half[axis]
         facing = -sign * direction[axis] > 1e-6 if kind == 0 else inside or outside
         if not facing:
             continue
@@ -95,7 +96,7 @@ def _front(
         tiles = [min(t, 64) for t in tiles] if inside else tiles
         rows.append((face, *tiles, first))
         first += tiles[0] * tiles[1]
-        share, whole = _shares(kind, position, direction, half, axis, sign, across, tiles, inside, scale)
+        share, whole = _shares(kind, at, direction, half, axis, sign, across, tiles, inside, scale)
         largest, total = max(largest, share), total + whole
     if first > MOST_TILES:
         reason = f"asks for {first / 1e6:.1f} million patches of light on the volume's box"

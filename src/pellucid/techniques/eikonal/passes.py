@@ -19,7 +19,7 @@ from pellucid.techniques.eikonal.brdf_tables import BrdfTables, spreading
 from pellucid.techniques.eikonal.hulls import Hull, hull_of
 from pellucid.techniques.eikonal.joining import Joiner, Placed
 from pellucid.techniques.eikonal.layouts import DrawParams, LookCount, LookRay, VolumeParams
-from pellucid.techniques.eikonal.light import LightSimulator, check_lights, flux_bound
+from pellucid.techniques.eikonal.light import MOST_BODIES, LightSimulator, Lit, check_lights, flux_bound
 from pellucid.techniques.eikonal.prepare import Prepared, prepare
 from pellucid.techniques.eikonal.proxies import Box, corners, tight_box, whole_box
 from pellucid.techniques.eikonal.relay import Relay, list_bytes
@@ -127,6 +127,7 @@ class EikonalTechnique:
             # Alone in the scene it may have all of its box: rays are not sent from body to body.
             box = volume.tight if len(placed) > 1 else whole_box(volume.prepared)
             bodies.append(self._place(what, volume, box, before))
+            bodies[-1].number = number
         self.bodies = bodies
         for body in bodies:
             self._write_parameters(body, surroundings)
@@ -135,30 +136,44 @@ class EikonalTechnique:
     def illuminate(self, lights: Sequence[Any], surroundings: Surroundings) -> None:
         """Follow the light of all lamps through the bodies that show it; what has not changed is kept.
 
-        Bodies that scatter get the light in them, meshes the caustics and shadows of all bodies that give any.
+        Bodies that scatter get the light in them, meshes the caustics and shadows of all bodies that give any. Light
+        goes on from body to body, so that what a body shows depends on all; more than `MOST_BODIES` are lit apart.
         """
         states = [_light_state(body, surroundings) for body in self.bodies]
+        together = len(self.bodies) <= MOST_BODIES
+        if together:
+            states = [(number, states) for number in range(len(states))]
         receiving = bool(lights) and surroundings.triangle_count > 0
         casting = [body for body in self.bodies if receiving and _look_of(body).caustics]
         cast_state = [state for body, state in zip(self.bodies, states, strict=True) if body in casting]
         again = bool(casting) and not (surroundings.caustics.active and cast_state == self._cast)
         if again:
             again = self._begin_caustics(casting, lights, surroundings)
-        lit: dict[int, Any] = {}
-        for number, (body, state) in enumerate(zip(self.bodies, states, strict=True)):
-            glows = bool(lights) and scatters(body.prepared)
-            before = self._lit.get(number)
-            fresh = before is not None and before[0] == state
-            casts = again and body in casting
-            if casts or (glows and not fresh):
+        glows = [bool(lights) and scatters(body.prepared) for body in self.bodies]
+        lit = {
+            number: self._lit[number]
+            for number, state in enumerate(states)
+            if glows[number] and number in self._lit and self._lit[number][0] == state
+        }
+        groups = [self.bodies] if together else [[body] for body in self.bodies]
+        for group in groups:
+            dim = [body for body in group if glows[body.number] and body.number not in lit]
+            casts = [again and body in casting for body in group]
+            if not dim and not any(casts):
+                continue
+            for body in group:
                 check_lights(body.prepared, body.world, lights)
-                self.follow_light(body, lights, surroundings, deposits=glows, casts=casts)
-            if glows and not fresh:
+            followed = [
+                Lit(body, _look_of(body), glows[body.number], here) for body, here in zip(group, casts, strict=True)
+            ]
+            self.simulator.run(followed, lights, surroundings, surroundings.caustics.land)
+            for body in dim:
+                before = self._lit.get(body.number)
+                shown = self.simulator.field(before[1] if before else None, group.index(body))
                 # The textures are kept with it, so that no id of theirs comes again.
-                lit[number] = (state, self.simulator.field(before[1] if before else None), body.textures)
-            elif glows:
-                lit[number] = before
-            body.light = lit[number][1].bindings if glows else {}
+                lit[body.number] = (states[body.number], shown, body.textures)
+        for body in self.bodies:
+            body.light = lit[body.number][1].bindings if glows[body.number] else {}
         if again:
             self._submit(surroundings.caustics.resolve)
         if not casting and surroundings.caustics.active:
@@ -192,31 +207,6 @@ class EikonalTechnique:
         if self._simulator is None:
             self._simulator = LightSimulator(self.device)
         return self._simulator
-
-    def follow_light(
-        self,
-        body: Body,
-        lights: Sequence[Any],
-        surroundings: Surroundings,
-        deposits: bool = True,
-        casts: bool = False,
-        progress: Callable[[float], None] | None = None,
-    ) -> None:
-        """Run the simulator on one body; the results stay in `simulator`, and on the meshes when it `casts`."""
-        self.simulator.run(
-            body.prepared,
-            body.textures.channels,
-            body.uniforms,
-            body.world,
-            lights,
-            surroundings,
-            body.quality,
-            _look_of(body),
-            deposits=deposits,
-            meets_meshes=_meets_meshes(body, whole_box(body.prepared), surroundings),  # light begins and ends there
-            land=surroundings.caustics.land if casts else None,
-            progress=progress,
-        )
 
     def _load(self, what: Placed) -> _Loaded:
         item, (volume, world) = what.objects[0], what.volume()
@@ -256,7 +246,7 @@ class EikonalTechnique:
                 body.prepared, body.textures, channel, body.quality, body.world, body.box, body.meets_meshes
             )
             self._brdfs.write(record, body.objects[0])
-            record["body"], record["body_count"] = self.bodies.index(body), len(self.bodies)
+            record["body"], record["body_count"] = body.number, len(self.bodies)
             body.hull.write(record)
             self.device.write(uniform, record.reshape(1))
             if body.prepared.crystals is not None:

@@ -8,6 +8,7 @@
 
 override DEPOSITS: bool = true;        // fluence is wanted, not only what leaves
 override OUTGOING: bool = true;        // what leaves is wanted
+override HANDS_ON: bool = false;       // there are other bodies, which get what leaves this one
 override INTENSITY: bool = false;      // the intensity law, the strongest patch of a voxel alone [tevs2007, eq. 4.16, 6.2.3]
 override AMBIENT_MATTER: bool = false; // matter without a surface dims light from the box on
 

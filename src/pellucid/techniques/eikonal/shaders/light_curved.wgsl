@@ -45,7 +45,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     for (var steps = 0u; event == PAUSED; steps++) {
         let at = middle(end_x);
         let way = normalize(middle(end_p));
-        let room = intersect_box(at, way, light.box_half).y;
+        let room = intersect_box(at - light.box_center, way, light.box_half).y;
         let from_x = end_x;
         let from_edges = cut_edges(end_x, way);
         let moved = step_front(tube, signs, room, graded);
@@ -100,7 +100,7 @@ fn finish(event: u32, flux: vec3f, tube: LightPatch) {
     for (var k = 0u; k < 4u; k++) { turn = max(turn, distance(end_p[k], corner_p[k])); }
     let changed = turn > BENT || any(flux != tube.flux);
     if (changed && tube.touched == UNTOUCHED) {
-        put_out(OUT_BLOCKED, corner_x, corner_p, tube.flux);
+        put_out(OUT_BLOCKED, corner_x, corner_p, tube.flux, tube);
         next.touched = TOUCHED;
     }
     for (var k = 0u; k < 4u; k++) { end_event[k] = event; }
@@ -114,7 +114,7 @@ fn finish(event: u32, flux: vec3f, tube: LightPatch) {
         case DIVIDE: { if (!divide(end_x, end_p, cut_edges(end_x, normalize(middle(end_p))), flux, next)) { add_flux(TOTAL_ENDED, flux); } }
         case OPAQUE: { add_flux(TOTAL_ABSORBED, flux); }
         case EXHAUSTED: { add_flux(TOTAL_ENDED, flux); }
-        default: { leave(flux, next.touched != UNTOUCHED); }
+        default: { leave(flux, next); }
     }
 }
 

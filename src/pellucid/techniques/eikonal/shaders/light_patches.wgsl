@@ -8,6 +8,7 @@ const SMALLEST_TORN = 0.3;         // voxels: narrower patches whose corners par
 const TURNED_NORMALS = 0.9;        // cosine: normals that differ by more tear a patch
 const OUT_CAUSTIC = 0u;
 const OUT_BLOCKED = 1u;
+const OUT_UNTOUCHED = 2u;
 
 const UNTOUCHED = 0u;
 const TOUCHED = 1u;                // the light is no longer where it would be without the volume
@@ -170,8 +171,8 @@ fn go_on(x: array<vec3f, 4>, p: array<vec3f, 4>, flux: vec3f, from_patch: LightP
     }
 }
 
-// Hand a bundle over to the surroundings, in world space.
-fn put_out(kind: u32, x: array<vec3f, 4>, p: array<vec3f, 4>, flux: vec3f) {
+// Hand a bundle over to the surroundings, in world space. Other bodies follow the light itself, not what it is worth.
+fn put_out(kind: u32, x: array<vec3f, 4>, p: array<vec3f, 4>, flux: vec3f, from_patch: LightPatch) {
     if (!OUTGOING) { return; }
     let place = reserve(0u, 1u, light.out_capacity);
     if (place == NO_ROOM) {
@@ -188,7 +189,11 @@ fn put_out(kind: u32, x: array<vec3f, 4>, p: array<vec3f, 4>, flux: vec3f) {
     out.way_1 = way_to_world(p[1]);
     out.way_2 = way_to_world(p[2]);
     out.way_3 = way_to_world(p[3]);
-    out.flux = weighed(flux);
+    out.flux = select(weighed(flux), flux, HANDS_ON);
+    out.level = from_patch.level;
+    out.begun = from_patch.begun;
+    out.is_ray = from_patch.is_ray;
+    out.breadth = from_patch.breadth * volume.scale;
     outgoing[place] = out;
 }
 
@@ -228,7 +233,7 @@ fn split_front(flux: vec3f, from_patch: LightPatch) -> bool {
         totals += u32(split.total);
     }
     if (totals != 0u && totals != 4u) { return false; }
-    if (from_patch.touched == UNTOUCHED) { put_out(OUT_BLOCKED, corner_x, corner_p, flux); }
+    if (from_patch.touched == UNTOUCHED) { put_out(OUT_BLOCKED, corner_x, corner_p, flux, from_patch); }
     var next = from_patch;
     next.touched = TOUCHED;
     next.bounces += 1u;
@@ -239,10 +244,11 @@ fn split_front(flux: vec3f, from_patch: LightPatch) -> bool {
     return true;
 }
 
-// Light leaves the box; if the volume has changed it, the surroundings are told.
-fn leave(flux: vec3f, touched: bool) {
+// Light leaves the box; if the volume has changed it, the surroundings are told, and other bodies in any case.
+fn leave(flux: vec3f, from_patch: LightPatch) {
     add_flux(TOTAL_OUT, flux);
-    if (touched) { put_out(OUT_CAUSTIC, end_x, end_p, flux); }
+    let touched = from_patch.touched != UNTOUCHED;
+    if (touched || HANDS_ON) { put_out(select(OUT_UNTOUCHED, OUT_CAUSTIC, touched), end_x, end_p, flux, from_patch); }
 }
 
 // Of the matter that fills a region, 1/world metre.

@@ -1,13 +1,14 @@
 // The front where it enters the box: one invocation a patch, on the faces that the lamp shines on [tevs2007, 4.2.2].
 
-//!import techniques/eikonal/shaders/light_patches
+//!import techniques/eikonal/shaders/light_enter
+//!import techniques/eikonal/shaders/light_others
 //!import surroundings/shaders/raycast
 
 override HAS_MESHES: bool = true;
-override SMOOTH: bool = false;
 
 const PARALLEL = 0u;
 const FROM_POINT = 1u;
+const OPEN_SAMPLES = 8u;      // along each edge of a patch
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -22,20 +23,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     for (var k = 0u; k < 4u; k++) {
         begin_corner(k, shape.x, (corner + vec2f(f32(k & 1u), f32(k >> 1u))) / tiles);
     }
-    let flux = light.power * (share_of_light() * lit_share());
-    add_flux(TOTAL_IN, flux);
-    if (largest_of(flux) <= 0.0) { return; }
+    let flux = light.power * (share_of_light() * lit_share() * open_share());
     var begun = LightPatch();
-    begun.signs = signs_of(distances_at(clamp(middle(corner_x), -light.box_half, light.box_half)));
-    begun.region = owner_of(begun.signs);
     begun.begun = largest_of(abs(weighed(flux)));
     begun.touched = select(UNTOUCHED, TOUCHED, light.inside != 0u);
-    var n = 0.0;
-    if (SMOOTH) { n = index_at(middle(corner_x)); } else { n = region_index(begun.region, middle(corner_x)); }
-    for (var k = 0u; k < 4u; k++) { corner_p[k] = n * normalize(corner_p[k]); }
-    let place = reserve(1u, 1u, light.capacity);
-    if (place == NO_ROOM) { add_flux(TOTAL_ENDED, flux); return; }
-    emit(place, corner_x, corner_p, flux, begun);
+    enter(flux, begun);
 }
 
 // A corner on a face of the box; face = 2 axis + side. Around a lamp inside the box all rays begin at it.
@@ -51,7 +43,7 @@ fn begin_corner(k: u32, face: u32, at: vec2f) {
         corner_p[k] = unit;
         return;
     }
-    corner_x[k] = unit * half;
+    corner_x[k] = light.box_center + unit * half;
     corner_p[k] = select(corner_x[k] - light.position, light.direction, light.kind == PARALLEL);
 }
 
@@ -88,4 +80,18 @@ fn lit_share() -> f32 {
         lit += 0.25 * f32(!occluded(point_to_world(x), way_to_world(to_lamp), reach));
     }
     return lit;
+}
+
+// How much of the patch comes straight from the lamp. The rest comes through other bodies, and from them (light_arrive.wgsl).
+fn open_share() -> f32 {
+    if (!HANDS_ON || light.inside != 0u) { return 1.0; }
+    var open = 0.0;
+    for (var k = 0u; k < OPEN_SAMPLES * OPEN_SAMPLES; k++) {
+        let at = (vec2f(f32(k % OPEN_SAMPLES), f32(k / OPEN_SAMPLES)) + 0.5) / f32(OPEN_SAMPLES);
+        let x = between_corners(corner_x, at);
+        let to_lamp = select(light.position - x, -light.direction, light.kind == PARALLEL);
+        let reach = select(length(to_lamp) * volume.scale, 1e30, light.kind == PARALLEL);
+        open += f32(body_ahead(point_to_world(x), way_to_world(to_lamp), reach).body == NOBODY);
+    }
+    return open / f32(OPEN_SAMPLES * OPEN_SAMPLES);
 }

@@ -53,7 +53,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     add_flux(TOTAL_ABSORBED, before - flux);
     var next = tube;
     if (AMBIENT_MATTER && tube.touched == UNTOUCHED) {
-        put_out(OUT_BLOCKED, corner_x, corner_p, before);
+        put_out(OUT_BLOCKED, corner_x, corner_p, before, tube);
         next.touched = TOUCHED;
     }
     if (widens || stretches) {
@@ -66,7 +66,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
         case OPAQUE: { add_flux(TOTAL_ABSORBED, flux); }
         case EXHAUSTED: { add_flux(TOTAL_ENDED, flux); }
-        default: { leave(flux, next.touched != UNTOUCHED); }
+        default: { leave(flux, next); }
     }
 }
 
@@ -101,7 +101,7 @@ fn before_surface() -> vec4f {
 fn find_end(k: u32, tube: LightPatch) {
     let start = corner_x[k];
     let d = normalize(corner_p[k]);
-    let room = max(intersect_box(start, d, light.box_half).y, 0.0);
+    let room = max(intersect_box(start - light.box_center, d, light.box_half).y, 0.0);
     var signs = tube.signs;
     var steps = 0u;
     var t = 0.0;
