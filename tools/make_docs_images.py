@@ -2,7 +2,8 @@
 
 Run ``pellucid demo --output out/demo`` and then ``python tools/make_docs_images.py out/demo``. It writes
 docs/images/gallery/NAME.jpg (400 x 300) and docs/images/demo.jpg, the sheet of them all for the README; with
-``--comparison out/povray`` also the pictures of ``tools/compare_povray.py`` that docs/truth.md shows.
+``--comparison out/povray`` also the pictures of ``tools/compare_povray.py`` that docs/truth.md shows, and with
+``--light out/light`` those of ``tools/light_pictures.py`` that docs/light.md shows. Without a folder, only the latter.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import OpenImageIO
 DOCS = Path(__file__).resolve().parents[1] / "docs" / "images"
 THUMBNAIL = (400, 300)
 SHEET_WIDTH = 1200
+LIGHT = {"fluence": (288, 384), "intensity": (288, 384), "caustic": (512, 384)}
 COMPARED = ("povray", "sharp", "smooth", "sharp_difference_x4", "smooth_difference_x4")
 
 
@@ -30,22 +32,31 @@ def write_jpeg(source: Path, target: Path, size: tuple[int, int], quality: int) 
         sys.exit(f"{target}: {small.geterror() or OpenImageIO.geterror()}")
 
 
-def main() -> None:
-    """Write every picture; stop at the first that is missing."""
+def write_gallery(demo: Path) -> None:
+    """Every picture of the gallery, and the sheet of them all."""
     from pellucid.gallery import PICTURES
 
-    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0])
-    parser.add_argument("demo", type=Path, help="folder that `pellucid demo` wrote")
-    parser.add_argument("--comparison", type=Path, help="folder that tools/compare_povray.py wrote")
-    options = parser.parse_args()
     for number, picture in enumerate(PICTURES, start=1):
-        source = options.demo / f"{number:02d}_{picture.name}.png"
+        source = demo / f"{number:02d}_{picture.name}.png"
         write_jpeg(source, DOCS / "gallery" / f"{picture.name}.jpg", THUMBNAIL, 82)
-    sheet = options.demo / "contact_sheet.png"
+    sheet = demo / "contact_sheet.png"
     spec = OpenImageIO.ImageBuf(str(sheet)).spec()
     write_jpeg(sheet, DOCS / "demo.jpg", (SHEET_WIDTH, round(SHEET_WIDTH * spec.height / spec.width)), 85)
+
+
+def main() -> None:
+    """Write every picture; stop at the first that is missing."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0])
+    parser.add_argument("demo", type=Path, nargs="?", help="folder that `pellucid demo` wrote")
+    parser.add_argument("--comparison", type=Path, help="folder that tools/compare_povray.py wrote")
+    parser.add_argument("--light", type=Path, help="folder that tools/light_pictures.py wrote")
+    options = parser.parse_args()
+    if options.demo:
+        write_gallery(options.demo)
     for name in COMPARED if options.comparison else ():
         write_jpeg(options.comparison / f"{name}.png", DOCS / "povray" / f"{name}.jpg", THUMBNAIL, 85)
+    for name, size in LIGHT.items() if options.light else ():
+        write_jpeg(options.light / f"{name}.png", DOCS / "light" / f"{name}.jpg", size, 85)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import sys
 from types import ModuleType
@@ -53,3 +54,21 @@ def test_an_installation_without_benchmarks(pellucid, monkeypatch):
     monkeypatch.setitem(sys.modules, "pellucid.benchmarks", None)
     said = pellucid("bench")
     assert said.code == 1 and said.err.startswith("error: ") and "benchmarks" in said.err
+
+
+def test_the_light_suite_prints_its_rows(pellucid, monkeypatch):
+    """With two small balls in place of its jobs."""
+    suite = importlib.import_module("pellucid.benchmarks.light")
+    jobs = {
+        suite.BASE: suite._Job(lambda: suite._ball(16), "small"),
+        "floor": suite._Job(lambda: suite._ball(12), "", floor=True),
+    }
+    monkeypatch.setattr(suite, "_jobs", lambda most_bytes: jobs)
+    monkeypatch.setattr(suite, "RESOLUTION", 16)
+    monkeypatch.setattr(suite, "SIZE", (48, 36))
+    said = pellucid("bench", "light", "--json", "--repeat", "1")
+    assert said.code == 0, said.err
+    rows = {row["name"]: row for row in json.loads(said.out)["rows"]}
+    assert list(rows) == [suite.BASE, "floor", "view_clear_16", "view_scattering_16"]
+    assert rows[suite.BASE]["ratio"] == 1.0 and all(row["ms"] > 0.0 for row in rows.values())
+    assert "patches" in rows["floor"]["note"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shlex
 from pathlib import Path
+from typing import Any
 
 import pytest
 import typer
@@ -51,6 +52,18 @@ def test_the_example_of_the_readme_runs(tmp_path: Path, monkeypatch: pytest.Monk
     exec(compile(small, "README.md", "exec"), values)
     assert [p.name for p in tmp_path.iterdir()] == ["ball.png"]
     assert values["frame"].radiance.std() > 0.01  # type: ignore[attr-defined]
+
+
+def test_the_example_of_the_page_on_light_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    blocks = [body for language, body in FENCE.findall((ROOT / "docs" / "light.md").read_text("utf-8")) if language]
+    assert len(blocks) == 1 and "resolution=96" in blocks[0]
+    values: dict[str, Any] = {}
+    exec(compile(blocks[0].replace("=96", "=32"), "light.md", "exec"), values)
+    light, place = values["light"], values["place"]
+    assert light.flux_absorbed + light.flux_out + light.flux_ended == pytest.approx(light.flux_in, rel=1e-3)
+    x, y, z = (((place[axis] + 0.5) / 32 - 0.5) * 0.1 for axis in (2, 1, 0))
+    assert max(abs(x), abs(y)) < 0.1 / 32 and -0.0294 < z < -0.02  # behind the ball, not beyond the paraxial focus
+    assert capsys.readouterr().out.startswith("brightest at")
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name)

@@ -17,7 +17,7 @@ class LightQuality(Value):
     Parameters
     ----------
     front_voxels : edge of a patch of the front where it enters the box, in voxels, 0.1 to 8.
-    split_voxels : a patch that has grown wider is divided into four, 0.25 to 8 voxels.
+    split_voxels : a patch that has grown wider is divided, 0.25 to 8 voxels.
     bounces : crossings of boundaries that light is followed through, 0 to 32.
     min_flux : light that carries less than this share of what its patch began with is given up, 0 to 0.5.
     method : ``"flux"`` adds what every patch carries to the voxels that it crosses, so that energy is kept and

@@ -1,21 +1,14 @@
-"""Timings that the README quotes and anyone can print again; never asserted by a test.
-
-Every suite renders its variants in turn, several rounds after a warm-up, and states medians and ratios of one run.
-"""
+"""The view renderer: the same ball drawn in several ways, and what it takes to prepare a body."""
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-Progress = Callable[[float], None]
-SIZE = (800, 600)
-RESOLUTION = 128
+from pellucid.benchmarks.rows import RESOLUTION, SIZE, Progress, bunny_path, device_of, row_of
 
 
 def eikonal(progress: Progress = lambda share: None, repeat: int = 5) -> dict[str, Any]:
@@ -52,11 +45,11 @@ def eikonal(progress: Progress = lambda share: None, repeat: int = 5) -> dict[st
     rows = []
     for name, (boundary, _, note) in variants.items():
         error = None if boundary in ("sharp", "crystal") else _difference(pictures[name], reference, covered)
-        rows.append(_row(name, times[name], times["euler_half_voxel"], error, note))
+        rows.append(row_of(name, times[name], times["euler_half_voxel"], error, note))
     rows[-1]["note"] += f"; {memory:.0f} MiB on the device"
     rows += _preparation_rows()
     progress(1.0)
-    return {"device": _device(renderer), "suite": "eikonal", "rows": rows}
+    return {"device": device_of(renderer), "suite": "eikonal", "rows": rows}
 
 
 def _ball_scene() -> Callable[[str, Any], Any]:
@@ -96,8 +89,8 @@ def _preparation_rows() -> list[dict[str, Any]]:
     from pellucid.fields.shapes import creature_mesh
 
     rows = [_prepare_row("prepare_creature", *creature_mesh(0.1))]
-    bunny = Path(os.environ.get("PELLUCID_SHARED_DATA", "../shared/data")) / "bunny.ply"
-    if bunny.is_file():
+    bunny = bunny_path()
+    if bunny is not None:
         from pellucid.io.meshes import read_mesh
 
         mesh = read_mesh(bunny)
@@ -118,25 +111,4 @@ def _prepare_row(name: str, vertices: np.ndarray, faces: np.ndarray) -> dict[str
     shape = " x ".join(str(n) for n in volume.shape[::-1])
     seconds = f"{voxelised - begun:.2f} s, fields of both boundaries {done - voxelised:.2f} s"
     note = f"{len(faces)} faces to {shape} voxels in {seconds}"
-    return _row(name, [1e3 * (done - begun)], None, None, note)
-
-
-def _row(name: str, times: list[float], base: list[float] | None, error: float | None, note: str) -> dict[str, Any]:
-    median = float(np.median(times))
-    return {
-        "name": name,
-        "ms": round(median, 2),
-        "min_ms": round(min(times), 2),
-        "max_ms": round(max(times), 2),
-        "ratio": None if base is None else round(median / float(np.median(base)), 4),
-        "error": None if error is None else float(f"{error:.4g}"),
-        "note": note,
-    }
-
-
-def _device(renderer: Any) -> dict[str, Any]:
-    device = renderer.device
-    return {"name": device.name, "software": device.is_software, "cpus": os.cpu_count()}
-
-
-SUITES: dict[str, Callable[..., dict[str, Any]]] = {"eikonal": eikonal}
+    return row_of(name, [1e3 * (done - begun)], None, None, note)
