@@ -17,8 +17,8 @@ class LightQuality(Value):
     Parameters
     ----------
     front_voxels : edge of a patch of the front where it enters the box, in voxels, 0.1 to 8.
-    split_voxels : a patch that has grown wider is divided, 0.25 to 8 voxels.
-    bounces : crossings of boundaries that light is followed through, 0 to 32.
+    split_voxels : a patch that has grown wider is divided in two, 0.25 to 8 voxels.
+    bounces : crossings of boundaries that light is followed through, 0 to 48.
     min_flux : light that carries less than this share of what its patch began with is given up, 0 to 0.5.
     method : ``"flux"`` adds what every patch carries to the voxels that it crosses, so that energy is kept and
         folded fronts add up; ``"intensity"`` is the intensity law with the strongest patch of a voxel alone
@@ -32,8 +32,8 @@ class LightQuality(Value):
     """
 
     front_voxels: float = 1.0
-    split_voxels: float = 1.0
-    bounces: int = 8
+    split_voxels: float = 1.25
+    bounces: int = 32
     min_flux: float = 1e-3
     method: str = "flux"
     caustics: bool = True
@@ -44,7 +44,7 @@ class LightQuality(Value):
             self,
             front_voxels=checks.number("light.front_voxels", self.front_voxels, low=0.1, high=8.0, unit="voxels"),
             split_voxels=checks.number("light.split_voxels", self.split_voxels, low=0.25, high=8.0, unit="voxels"),
-            bounces=checks.integer("light.bounces", self.bounces, low=0, high=32),
+            bounces=checks.integer("light.bounces", self.bounces, low=0, high=48),
             min_flux=checks.number("light.min_flux", self.min_flux, low=0.0, high=0.5),
             method=checks.choice("light.method", self.method, LIGHT_METHODS),
             caustics=checks.flag("light.caustics", self.caustics),

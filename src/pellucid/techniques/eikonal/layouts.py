@@ -128,6 +128,7 @@ LightPatch = struct(
         ("p_3", "vec3f"),
         ("begun", "f32"),  # what it carried, brightest channel, when it was last undisturbed
         ("flux", "vec3f"),
+        ("stuck", "u32"),  # ways of no length in a row
     ]
 )
 

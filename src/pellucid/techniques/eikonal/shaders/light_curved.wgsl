@@ -81,11 +81,14 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                 for (var k = 0u; k < 4u; k++) { end_x[k] -= back; }
             }
             let before = flux;
-            travel(tube_between(written_x, end_x, flux, tube), &flux, of_region);
+            travel(tube_between(written_x, end_x, tube), &flux, of_region);
             add_flux(TOTAL_ABSORBED, before - flux);
             written = middle(end_x);
             written_x = end_x;
         }
+        // Behind a caustic the source lets a front end [tevs2007, 6.2.4].
+        let turned_over = orientation(end_x, way) != orientation(corner_x, normalize(middle(corner_p)));
+        if (INTENSITY && event == PAUSED && tube.is_ray == 0u && turned_over) { event = EXHAUSTED; }
         if (SMOOTH) { flux = pass_boundary(flux, tube); }
     }
     finish(event, flux, tube);
@@ -111,7 +114,7 @@ fn finish(event: u32, flux: vec3f, tube: LightPatch) {
             }
         }
         case PARTED: { if (!scatter_corners(end_x_before(), end_p, flux, next)) { add_flux(TOTAL_ENDED, flux); } }
-        case DIVIDE: { if (!divide(end_x, end_p, cut_edges(end_x, normalize(middle(end_p))), flux, next)) { add_flux(TOTAL_ENDED, flux); } }
+        case DIVIDE: { if (!divide(end_x, end_p, cut_edges(end_x, normalize(middle(end_p))), flux, true, next)) { add_flux(TOTAL_ENDED, flux); } }
         case OPAQUE: { add_flux(TOTAL_ABSORBED, flux); }
         case EXHAUSTED: { add_flux(TOTAL_ENDED, flux); }
         default: { leave(flux, next); }

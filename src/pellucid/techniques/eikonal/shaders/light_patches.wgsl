@@ -52,15 +52,14 @@ fn edges_of(x: array<vec3f, 4>) -> mat2x3f {
 }
 
 // The tube of a patch between these corners and those. A ray stands for the breadth of what it came from.
-fn tube_between(x: array<vec3f, 4>, y: array<vec3f, 4>, flux: vec3f, of_patch: LightPatch) -> Tube {
-    let weak = !worth_dividing(flux, of_patch);
-    if (of_patch.is_ray == 0u) { return Tube(middle(x), middle(y), edges_of(x), edges_of(y), weak); }
+fn tube_between(x: array<vec3f, 4>, y: array<vec3f, 4>, of_patch: LightPatch) -> Tube {
+    if (of_patch.is_ray == 0u) { return Tube(middle(x), middle(y), edges_of(x), edges_of(y)); }
     let way = y[0] - x[0];
     let aside = select(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), abs(way.x) > max(abs(way.y), abs(way.z)));
     let first = cross(way, aside) / max(length(cross(way, aside)), 1e-20);
     let second = cross(way / max(length(way), 1e-20), first);
     let broad = mat2x3f(of_patch.breadth * first, of_patch.breadth * second);
-    return Tube(x[0], y[0], broad, broad, weak);
+    return Tube(x[0], y[0], broad, broad);
 }
 
 // Area of the tube's cross-section, object metres squared.
@@ -70,6 +69,11 @@ fn cross_section(x: array<vec3f, 4>, d: vec3f) -> f32 {
 
 fn between_corners(v: array<vec3f, 4>, at: vec2f) -> vec3f {
     return mix(mix(v[0], v[1], at.x), mix(v[2], v[3], at.x), at.y);
+}
+
+// Which way round the corners stand, seen along the light; it changes at a caustic.
+fn orientation(x: array<vec3f, 4>, d: vec3f) -> f32 {
+    return sign(dot(cross(x[3] - x[0], x[2] - x[1]), d));
 }
 
 // Light of one patch relative to what it had when it was undisturbed, however often it was divided since.
@@ -87,18 +91,24 @@ fn worth_dividing(flux: vec3f, of_patch: LightPatch) -> bool {
     return of_patch.touched == UNTOUCHED || largest_of(abs(weighed(flux))) > light.divide_above * of_patch.begun;
 }
 
+// The same before a surface, where a patch may be stretched without bounds.
+fn worth_stretching(flux: vec3f) -> bool {
+    return largest_of(abs(weighed(flux))) > light.divide_above * light.patch_flux;
+}
+
 fn emit(place: u32, x: array<vec3f, 4>, p: array<vec3f, 4>, flux: vec3f, from_patch: LightPatch) {
     next_patches[place] = LightPatch(
         x[0], from_patch.region, x[1], from_patch.signs, x[2], from_patch.level, x[3], from_patch.bounces,
-        p[0], from_patch.touched, p[1], from_patch.is_ray, p[2], from_patch.breadth, p[3], from_patch.begun, flux);
+        p[0], from_patch.touched, p[1], from_patch.is_ray, p[2], from_patch.breadth, p[3], from_patch.begun, flux, from_patch.stuck);
 }
 
 // Two children of what lies between these corners, cut across the longer of its edges. False when there is no room for them.
-fn divide(x: array<vec3f, 4>, p: array<vec3f, 4>, edges: vec2f, flux: vec3f, from_patch: LightPatch) -> bool {
+fn divide(x: array<vec3f, 4>, p: array<vec3f, 4>, edges: vec2f, flux: vec3f, spreads: bool, from_patch: LightPatch) -> bool {
     let place = reserve(generation.index + 2u, 2u, light.capacity);
     if (place == NO_ROOM) { return false; }
     var child = from_patch;
-    let whole = from_patch.touched == UNTOUCHED;
+    // Undisturbed light that only spreads begins anew; what a surface is about to tear or stretch does not.
+    let whole = spreads && from_patch.touched == UNTOUCHED;
     child.level += select(1u, 0u, whole);
     child.begun *= select(1.0, 0.5, whole);
     let half = select(vec2f(1.0, 0.5), vec2f(0.5, 1.0), edges.x >= edges.y);

@@ -7,8 +7,8 @@
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if (id.x >= atomicLoad(&counters.lists[generation.index + 1u].count)) { return; }
-    let tube = patches[id.x];
-    unpack(tube);
+    unpack(patches[id.x]);
+    let tube = free(patches[id.x]);
     for (var k = 0u; k < 4u; k++) {
         // A single ray has four corners in one place.
         if (k == 0u || tube.is_ray == 0u) {
@@ -33,7 +33,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         if (narrow || !worth_dividing(flux, tube)) {
             parted = collapse(corner_x, corner_p, flux, tube);
         } else {
-            parted = divide(corner_x, corner_p, from_edges, flux, tube);
+            parted = divide(corner_x, corner_p, from_edges, flux, false, tube);
         }
         if (!parted) { add_flux(TOTAL_ENDED, flux); }
         return;
@@ -44,24 +44,30 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var part = vec4f(select(1.0, clamp((limit - from_width) / max(to_width - from_width, 1e-12), 0.0, 1.0), widens));
     // What a surface stretches is divided before it: there a bundle is still straight, and its children meet the true surface.
     let stretched = edges_behind();
-    let stretches = !widens && end_event[0] == INTERFACE && tube.is_ray == 0u && worth_dividing(flux, tube) && max(stretched.x, stretched.y) > limit;
+    let stretches = !widens && end_event[0] == INTERFACE && tube.is_ray == 0u && worth_stretching(flux) && max(stretched.x, stretched.y) > limit;
     if (stretches) { part = before_surface(); }
     var at = array<vec3f, 4>();
     for (var k = 0u; k < 4u; k++) { at[k] = mix(corner_x[k], end_x[k], part[k]); }
     let before = flux;
-    travel(tube_between(corner_x, at, flux, tube), &flux, region_extinction(tube.region));
+    travel(tube_between(corner_x, at, tube), &flux, region_extinction(tube.region));
     add_flux(TOTAL_ABSORBED, before - flux);
     var next = tube;
     if (AMBIENT_MATTER && tube.touched == UNTOUCHED) {
         put_out(OUT_BLOCKED, corner_x, corner_p, before, tube);
         next.touched = TOUCHED;
     }
+    // Behind a caustic the source lets a front end [tevs2007, 6.2.4].
+    if (INTENSITY && tube.is_ray == 0u && orientation(at, d) != orientation(corner_x, d)) {
+        add_flux(TOTAL_ENDED, flux);
+        return;
+    }
     if (widens || stretches) {
-        if (!divide(at, corner_p, select(cut_edges(at, d), stretched, stretches), flux, next)) { add_flux(TOTAL_ENDED, flux); }
+        if (!divide(at, corner_p, select(cut_edges(at, d), stretched, stretches), flux, widens, next)) { add_flux(TOTAL_ENDED, flux); }
         return;
     }
     switch end_event[0] {
         case INTERFACE: {
+            next.stuck = select(0u, tube.stuck + 1u, is_stuck());
             if (!split_front(flux, next) && !collapse(end_x_before(), corner_p, flux, next)) { add_flux(TOTAL_ENDED, flux); }
         }
         case OPAQUE: { add_flux(TOTAL_ABSORBED, flux); }
@@ -95,6 +101,26 @@ fn before_surface() -> vec4f {
         distance(corner_x[2], end_x[2]), distance(corner_x[3], end_x[3]));
     let shortest = min(min(ways.x, ways.y), min(ways.z, ways.w)) - BEFORE_SURFACE * volume.voxel;
     return max(shortest, 0.0) / max(ways, vec4f(1e-12));
+}
+
+const NO_WAY = 0.02;          // voxels
+const MOST_STUCK = 2u;
+
+// In a wall thinner than a voxel a ray may believe to be on the wrong side of a surface, and be turned back at once for ever. After
+// some ways of no length it takes the side that the distances say, and goes straight on.
+fn free(tube: LightPatch) -> LightPatch {
+    var freed = tube;
+    if (tube.stuck < MOST_STUCK) { return freed; }
+    let ahead = middle(corner_x) + 2.0 * FIRST_STRIDE * volume.voxel * normalize(middle(corner_p));
+    freed.signs = signs_of(distances_at(ahead));
+    freed.region = owner_of(freed.signs);
+    for (var k = 0u; k < 4u; k++) { corner_p[k] = region_index(freed.region, corner_x[k]) * normalize(corner_p[k]); }
+    freed.stuck = 0u;
+    return freed;
+}
+
+fn is_stuck() -> bool {
+    return end_event[0] == INTERFACE && distance(middle(corner_x), middle(end_x)) < NO_WAY * volume.voxel;
 }
 
 // Follow corner k to a surface, an opaque voxel, a mesh, or out of the box.

@@ -3,6 +3,8 @@
 //!import techniques/eikonal/shaders/light_bindings
 //!import techniques/eikonal/shaders/fields
 
+const WIDE = 1.3;         // voxels
+
 // Rounding to whole quanta hands its remainder on, so that sums stay true.
 var<private> fluence_carry: vec3f = vec3f(0.5);
 var<private> direction_carry: vec4f = vec4f(0.5);
@@ -28,7 +30,6 @@ struct Tube {
     b: vec3f,
     edges_a: mat2x3f,     // of its cross-section, at a
     edges_b: mat2x3f,     // and at b
-    weak: bool,           // carries so little that random points of it stand for it
 }
 
 // Carries flux through a tube. Within one layer of voxels across its main axis the tube is a rectangle of known length, shared by
@@ -61,8 +62,7 @@ fn travel(tube: Tube, flux: ptr<function, vec3f>, of_region: vec3f) {
         let until = select(clamp((border - start.z) / run.z, t, 1.0), 1.0, reach < 1e-9);
         border += hop;
         let part = until - t;
-        let random = random_pair(vec2u(bitcast<u32>(start.x + start.y), bitcast<u32>(start.z + t)));
-        let along = mix(t, until, select(0.5, random.x, tube.weak));
+        let along = 0.5 * (t + until);
         let at = start + along * run;
         let length_m = part * length_os * volume.scale;
         let depth = extinction_at(a + along * (b - a), of_region) * length_m;
@@ -74,9 +74,12 @@ fn travel(tube: Tube, flux: ptr<function, vec3f>, of_region: vec3f) {
         let within = all(at >= vec3f(0.0)) && all(at <= bounds);
         if (DEPOSITS && part > 0.0 && within) {
             var place = TubePlace(at, mix(size_a.size, size_b.size, along), reach / length(run));
-            if (tube.weak) {
+            let u = mix(size_a.u, size_b.u, along);
+            let v = mix(size_a.v, size_b.v, along);
+            if (max(dot(u, u), dot(v, v)) > WIDE * WIDE) {
+                // Left wide, since it carries little: one random point of each layer stands for it.
                 let across = random_pair(bitcast<vec2u>(at.xy) ^ vec2u(k)) - 0.5;
-                let off = across.x * mix(size_a.u, size_b.u, along) + across.y * mix(size_a.v, size_b.v, along);
+                let off = across.x * u + across.y * v;
                 place = TubePlace(vec3f(clamp(at.xy + off, vec2f(0.0), bounds.xy - 1e-3), at.z), vec2f(1.0), place.cosine);
             }
             deposit(mean, length_m, place, bounds, axis);
