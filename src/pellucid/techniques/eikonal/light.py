@@ -537,7 +537,9 @@ def _record(lit: Lit, sources: Sequence[Source], largest: float, total: float) -
     out["patch_flux"] = patch_flux
     out["min_flux"] = quality.min_flux
     out["divide_above"] = DIVIDE_ABOVE
-    out["split_width"] = quality.split_voxels * prepared.voxel
+    # Of a voxel the intensity law keeps one patch: patches must not be wider, or voxels stay dark between them.
+    widest = min(quality.split_voxels, 1.0) if quality.method == "intensity" else quality.split_voxels
+    out["split_width"] = widest * prepared.voxel
     out["quanta_per_flux_m"] = min(2.0**15 / (patch_flux * longest), 2.0**30 / (total_flux * longest))
     out["fluence_per_quantum"] = 1.0 / (float(out["quanta_per_flux_m"]) * float(np.prod(voxel_m)))
     # Of the intensity law: quanta of fluence for a flux through the cross-section of a voxel

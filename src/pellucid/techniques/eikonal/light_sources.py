@@ -82,7 +82,6 @@ def _front(
     inside = kind != 0 and bool((np.abs(at) < half).all())
     edge = quality.front_voxels * voxel
     rows, first, largest, total = [], 0, 0.0, 0.0
-    stretch = np.ones(3) if inside else _stretch(direction if kind == 0 else at)
     for face in range(6):
         axis, side = divmod(face, 2)
         sign = 2.0 * side - 1.0
@@ -92,7 +91,7 @@ def _front(
         if not facing:
             continue
         # A front that begins at a point inside is divided as it grows.
-        tiles = [max(1, int(np.ceil(2.0 * half[a] / (edge * stretch[a]) - 1e-6))) for a in across]
+        tiles = [max(1, int(np.ceil(2.0 * half[a] / edge - 1e-6))) for a in across]
         tiles = [min(t, 64) for t in tiles] if inside else tiles
         rows.append((face, *tiles, first))
         first += tiles[0] * tiles[1]
@@ -104,18 +103,6 @@ def _front(
     brightest = float(np.max(power))
     faces = np.array(rows, np.uint32).reshape(-1, 4)
     return Source(kind, position, direction, power, casts, inside, faces, brightest * largest, brightest * total)
-
-
-def _stretch(way: np.ndarray) -> np.ndarray:
-    """How much longer a patch may be along each axis of the box, so that layers across the beam cut it square.
-
-    A beam meets the sides of a box obliquely; along its main axis it sweeps a layer by only its slope.
-    """
-    out = np.ones(3)
-    main = int(np.argmax(np.abs(way)))
-    slopes = np.abs(np.delete(way, main)) / abs(way[main])
-    out[main] = 1.0 / float(np.clip(slopes.max(), 0.25, 1.0))
-    return out
 
 
 def _shares(

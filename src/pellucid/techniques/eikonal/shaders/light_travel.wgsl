@@ -73,14 +73,15 @@ fn travel(tube: Tube, flux: ptr<function, vec3f>, of_region: vec3f) {
         // Light may begin and end outside the grid, where a box that is itself the surface has a margin.
         let within = all(at >= vec3f(0.0)) && all(at <= bounds);
         if (DEPOSITS && part > 0.0 && within) {
-            var place = TubePlace(at, mix(size_a.size, size_b.size, along), reach / length(run));
             let u = mix(size_a.u, size_b.u, along);
             let v = mix(size_a.v, size_b.v, along);
+            let area = abs(u.x * v.y - u.y * v.x) * reach / length(run);
+            var place = TubePlace(at, mix(size_a.size, size_b.size, along), area);
             if (max(dot(u, u), dot(v, v)) > WIDE * WIDE) {
                 // Left wide, since it carries little: one random point of each layer stands for it.
                 let across = random_pair(bitcast<vec2u>(at.xy) ^ vec2u(k)) - 0.5;
                 let off = across.x * u + across.y * v;
-                place = TubePlace(vec3f(clamp(at.xy + off, vec2f(0.0), bounds.xy - 1e-3), at.z), vec2f(1.0), place.cosine);
+                place = TubePlace(vec3f(clamp(at.xy + off, vec2f(0.0), bounds.xy - 1e-3), at.z), vec2f(1.0), area);
             }
             deposit(mean, length_m, place, bounds, axis);
             let weight = dot(abs(weighed(mean)), vec3f(1.0)) * (length_m * light.quanta_per_flux_m / 3.0);
@@ -148,7 +149,7 @@ fn random_pair(seed: vec2u) -> vec2f {
 struct TubePlace {
     at: vec3f,            // grid, axes turned
     size: vec2f,          // of the rectangle, voxels
-    cosine: f32,          // between the way and the main axis
+    area: f32,            // of the tube's cross-section, voxels
 }
 
 fn deposit(carried: vec3f, length_m: f32, place: TubePlace, bounds: vec3f, axis: u32) {
@@ -163,7 +164,7 @@ fn deposit(carried: vec3f, length_m: f32, place: TubePlace, bounds: vec3f, axis:
     let y = vec2u(clamp(vec2f(low.y, low.y + 1.0), vec2f(0.0), vec2f(bounds.y - 1.0))) * strides.y;
     if (INTENSITY) {
         // E = flux / area of the tube, and of several the strongest.
-        let strongest = vec3i(flux * (light.intensity_quanta / max(size.x * size.y * place.cosine, 1e-6)));
+        let strongest = vec3i(flux * (light.intensity_quanta / max(place.area, 1e-6)));
         let voxel = 3u * (here + select(x.x, x.y, share.x >= 0.5) + select(y.x, y.y, share.y >= 0.5));
         atomicMax(&fluence[voxel], strongest.x);
         atomicMax(&fluence[voxel + 1u], strongest.y);
