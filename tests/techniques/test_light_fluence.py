@@ -207,7 +207,8 @@ def test_the_intensity_law_agrees_where_the_front_is_not_folded() -> None:
     volume = pl.Volume.from_function(shapes.luneburg(0.04), 32, 0.1)
     flux, intensity = light_in(volume, DOWN), light_in(volume, DOWN, method="intensity")
     place = centres(volume)
-    upper = (np.linalg.norm(place, axis=-1) < 0.035) & (place[..., 2] > -0.005)
+    # Nearer to the focus the strongest patch of a voxel is more than the mean of its patches.
+    upper = (np.linalg.norm(place, axis=-1) < 0.035) & (place[..., 2] > 0.003)
     assert off_by(intensity.fluence, flux.fluence, upper) < 0.05
 
 
