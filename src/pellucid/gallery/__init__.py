@@ -1,6 +1,6 @@
 """Pictures that show what the renderer does; `pellucid demo` and `pellucid gallery` render them."""
 
-from . import amber, crystals, light, solids, table
+from . import amber, company, crystals, glow, light, solids, table
 from .picture import Picture
 
 #: All pictures, in the order in which they are shown.
@@ -10,6 +10,8 @@ PICTURES: tuple[Picture, ...] = (
     *light.PICTURES,
     *amber.PICTURES,
     *crystals.PICTURES,
+    *glow.PICTURES,
+    *company.PICTURES,
 )
 
 __all__ = ["PICTURES", "Picture"]

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 
 from pellucid.fields import shapes
+from pellucid.fields.volume import Volume
 from pellucid.media import Medium
 from pellucid.scene import Camera, Environment, Mesh, Quality, RefractiveVolume, Scene
 
@@ -41,14 +44,20 @@ def three_glass_cube() -> Scene:
         (middle, stage.tinted("F2", (4.0, 16.0, 110.0))),
         (outer, stage.tinted("N-BK7", (14.0, 3.0, 1.5))),
     ]
-    cube = RefractiveVolume.from_regions(
-        glasses, 112, 1.08 * size, position=(0.0, 0.5 * size + stage.GAP_M, 0.0), rotation=(0.0, 31.0, 0.0),
+    volume = Volume.from_regions(glasses, 112, 1.08 * size)
+    milky = [(9.0, 0.75), (5.0, 0.8), (2.5, 0.8)]
+    layers = [
+        dataclasses.replace(region, scattering=(strength,) * 3, anisotropy=g)
+        for region, (strength, g) in zip(volume.regions, milky, strict=True)
+    ]
+    cube = RefractiveVolume.from_volume(
+        volume.replace(regions=tuple(layers)), position=(0.0, 0.5 * size + stage.GAP_M, 0.0), rotation=(0.0, 31.0, 0.0),
         dispersion=False, quality=Quality(bounces=6, min_weight=0.03),
     )  # fmt: skip
     return Scene(
         Camera((0.02, 0.088, 0.16), (0.0, 0.022, 0.0), fov_deg=28.0),
         Environment.studio(),
-        [stage.key_light(2.0)],
+        [stage.key_light(5.0)],
         [stage.table(0.36, stage.wood(), 4.0, roughness=0.4), cube],
         exposure=0.75,
         tone_mapping="khronos",
@@ -110,7 +119,8 @@ PICTURES = (
     Picture(
         "three-glass-cube",
         "Three glasses in one another",
-        "A clear rounded cube holds an amber one, and that a red one; each glass bends light in its own way.",
+        "A clear rounded cube holds an amber one, and that a red one; light sparkles in their slightly milky insides, and "
+        "throws coloured patterns on the table.",
         three_glass_cube,
         4,
     ),

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pellucid import media
+from pellucid.fields.volume import Volume
 from pellucid.media import Medium
 from pellucid.scene import DirectionalLight, Environment, Mesh
 
@@ -80,6 +81,32 @@ def noise(shape: tuple[int, int], scale: tuple[float, float], seed: int) -> npt.
     kept[0, 0] = 0.0
     values = np.fft.ifft2(np.fft.fft2(white) * kept).real
     return np.asarray(values / values.std())
+
+
+def noise_3d(shape: tuple[int, int, int], scale: float, seed: int) -> npt.NDArray[np.float64]:
+    """Smooth noise on voxels: mean 0, deviation 1; `scale` is its correlation in voxels."""
+    white = np.random.default_rng(seed).standard_normal(shape)
+    frequencies = np.meshgrid(*(np.fft.fftfreq(n) for n in shape), indexing="ij", sparse=True)
+    kept = np.exp(-2.0 * np.pi**2 * scale**2 * sum(f * f for f in frequencies))
+    kept[0, 0, 0] = 0.0
+    values = np.fft.ifftn(np.fft.fftn(white) * kept).real
+    return np.asarray(values / values.std())
+
+
+def voxel_centres(volume: Volume) -> tuple[npt.NDArray[np.float64], ...]:
+    """(Z, Y, X) each: x, y and z of the voxels, metres from the middle of the box."""
+    axes = [
+        (np.arange(n) + 0.5) * h - 0.5 * e
+        for n, h, e in zip(volume.shape[::-1], volume.voxel_m, volume.extent_m, strict=True)
+    ]
+    z, y, x = np.meshgrid(axes[2], axes[1], axes[0], indexing="ij")
+    return x, y, z
+
+
+def turned(angle_deg: float) -> npt.NDArray[np.float64]:
+    """(3, 3) a turn about the upright axis."""
+    c, s = np.cos(np.radians(angle_deg)), np.sin(np.radians(angle_deg))
+    return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
 
 
 def wood(size: int = 1024, planks: int = 6, light: Rgb = (0.46, 0.27, 0.13), dark: Rgb = (0.20, 0.095, 0.04)) -> Image:
