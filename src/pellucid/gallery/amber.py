@@ -23,6 +23,7 @@ def insect_in_amber() -> Scene:
         position=(0.0, 0.0100, 0.0),
         rotation=(0.0, -12.0, 0.0),
         dispersion=False,
+        light=stage.QUICK_LIGHT,
     )
     return Scene(
         Camera((0.012, 0.044, 0.062), (0.0, 0.0085, 0.0), fov_deg=28.0, near_m=0.003),

@@ -33,10 +33,10 @@ def glowing_sphere() -> Scene:
     turn = np.arctan2(z, x)
     wire = np.hypot(np.hypot(x, z) - 0.0125 - 0.003 * np.cos(3.0 * turn), y - 0.004 * np.sin(3.0 * turn))
     blob = np.exp(-((wire / 0.0017) ** 2)) + 0.25 * np.exp(-((x * x + y * y + z * z) / 0.0042**2))
-    glow = blob[..., None] * np.array([260.0, 95.0, 14.0])
+    glow = blob[..., None] * np.array([560.0, 200.0, 26.0])
     ball = RefractiveVolume.from_volume(
         glass.replace(emission=glow.astype(np.float32)), position=(0.0, radius + stage.GAP_M, 0.0),
-        rotation=(38.0, 0.0, 12.0), dispersion=False, light=LightQuality(front_voxels=2.0),
+        rotation=(38.0, 0.0, 12.0), dispersion=False, light=stage.QUICK_LIGHT,
     )  # fmt: skip
     sky, sun = stage.daylight(16.0, 130.0)
     return Scene(
@@ -75,7 +75,7 @@ def smoky_showcase() -> Scene:
             anisotropy=np.full(body.shape, 0.45),
         ),
         position=(0.0, 0.5 * extent[1] + stage.GAP_M, 0.0), dispersion=False, quality=Quality(bounces=6),
-        light=LightQuality(caustics=False),
+        light=LightQuality(caustics=False, front_voxels=1.5, min_flux=1e-2),
     )  # fmt: skip
     frame = [
         Mesh.box((0.003, extent[1], 0.003), position=(sx * 0.068, 0.5 * extent[1], sz * 0.068), base_color=(0.02,) * 3,
@@ -86,7 +86,7 @@ def smoky_showcase() -> Scene:
     lamp = PointLight((0.02, -0.13, 0.015), (1.0, 0.93, 0.82), 0.34, cast_shadow=False)
     return Scene(
         Camera((0.13, 0.105, 0.52), (0.0, 0.062, 0.0), fov_deg=18.5),
-        Environment.studio(intensity=0.12),
+        Environment.studio(intensity=0.07),
         [lamp],
         [plinth, *frame, case],
         exposure=1.0,
@@ -105,14 +105,14 @@ def lit_from_below() -> Scene:
     turbid = dataclasses.replace(turbid, scattering=(9.0, 5.0, 5.0), anisotropy=0.4)
     stemware = RefractiveVolume.from_volume(
         body.replace(regions=(clear, turbid)), position=(0.0, 0.5 * height + stage.GAP_M, 0.0), dispersion=False,
-        light=LightQuality(caustics=False, front_voxels=1.5),
+        light=LightQuality(caustics=False, front_voxels=2.0, min_flux=1e-2),
     )  # fmt: skip
     pane = Mesh.box((0.26, 0.01, 0.26), position=(0.0, -0.005, 0.0), base_color=(0.0, 0.0, 0.0), specular=0.0,
                     emission=(0.85, 0.80, 0.72), rotation=(0.0, 20.0, 0.0))  # fmt: skip
     table = stage.table(0.5, stage.wood(), 5.0, roughness=0.35, position=(0.0, -0.0102, 0.0))
     up = DirectionalLight((0.0, 1.0, 0.0), (1.0, 0.94, 0.85), 2.6, cast_shadow=False)
     return Scene(
-        Camera((0.08, 0.17, 0.5), (0.0, 0.098, 0.0), fov_deg=29.0),
+        Camera((0.08, 0.17, 0.5), (0.0, 0.1, 0.0), fov_deg=31.0),
         Environment.studio(intensity=0.2),
         [up],
         [table, pane, stemware],
@@ -142,7 +142,7 @@ PICTURES = (
     Picture(
         "lit-from-below",
         "Glass of wine over a lamp",
-        "A glass of wine stands on a pane of light in a dark room; the wine glows red from below, the rim catches light.",
+        "A glass of wine stands on a pane of light in a dark room; the wine glows red, most of all at its bottom.",
         lit_from_below,
         3,
     ),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pellucid.fields import shapes
+from pellucid.fields.volume import Volume
 from pellucid.scene import Camera, DirectionalLight, Environment, LightQuality, Mesh, Quality, RefractiveVolume, Scene
 
 from . import stage
@@ -105,6 +106,47 @@ def hot_air() -> Scene:
     )
 
 
+def spectrum() -> Scene:
+    """A slit of sunlight through a prism of SF10 in thin smoke, on to a screen.
+
+    Seen from above the beam comes along x. Inside the prism it runs along the base, so that it is turned least: by
+    60 deg, and violet 7 deg more than red.
+    """
+    side, tall, half_turn, slit = 0.05, 0.045, np.radians(29.8), 0.004
+    along = np.array([np.cos(half_turn), np.sin(half_turn)])
+    base = np.array([-along[1], along[0]])
+    low, high = np.array([-0.095, -0.04]), np.array([0.16, 0.165])
+    centre = 0.25 * side * along + base * side / (4.0 * np.sqrt(3.0)) - 0.5 * (low + high)
+    corners = [centre - base * side / np.sqrt(3.0)]
+    corners += [centre + base * side / (2.0 * np.sqrt(3.0)) + sign * 0.5 * side * along for sign in (1.0, -1.0)]
+    outline = [(float(x), float(y)) for x, y in corners]
+    extent = (float(high[0] - low[0]), float(high[1] - low[1]), 1.1 * tall)
+    body = Volume.from_sdf(shapes.extruded_polygon(outline, tall), "SF10", 128, extent)
+    smoke = np.where(np.asarray(body.regions[0].sdf) > 0.0, 3.5, 0.0)
+    prism = RefractiveVolume.from_volume(
+        body.replace(scattering=np.repeat(smoke[..., None], 3, axis=3), anisotropy=np.full(body.shape, 0.3)),
+        position=(float(0.5 * (low[0] + high[0])), 0.55 * tall + stage.GAP_M, float(-0.5 * (low[1] + high[1]))),
+        rotation=(-90.0, 0.0, 0.0), spectral=12, quality=Quality(bounces=4, min_weight=0.05),
+        light=LightQuality(bounces=4, min_flux=1e-2, caustic_texels=400),
+    )  # fmt: skip
+    dark = {"base_color": (0.03, 0.03, 0.035), "roughness": 0.7}
+    screens = [
+        Mesh.box((0.006, 0.16, 0.3), position=(-0.11, 0.08, sign * (0.15 + 0.5 * slit)), **dark) for sign in (-1.0, 1.0)
+    ]
+    screens.append(Mesh.box((0.006, 0.12, 0.02), position=(-0.11, 0.1, 0.0), **dark))
+    screens.append(Mesh.box((0.006, 0.012, 0.02), position=(-0.11, 0.006, 0.0), **dark))
+    wall = Mesh.plane((0.3, 0.09), position=(0.07, 0.045, -0.18), rotation=(90.0, 0.0, 0.0), base_color=(0.8,) * 3,
+                      roughness=0.9)  # fmt: skip
+    return Scene(
+        Camera((0.03, 0.23, 0.20), (0.03, 0.012, -0.065), fov_deg=37.0),
+        Environment.studio(intensity=0.08),
+        [DirectionalLight((1.0, 0.0, 0.0), (1.0, 1.0, 1.0), 70.0)],
+        [stage.table(0.3, stage.stone(512, (0.10, 0.10, 0.11), 0.1), 2.0, roughness=0.8), wall, *screens, prism],
+        exposure=1.6,
+        tone_mapping="khronos",
+    )
+
+
 PICTURES = (
     Picture(
         "dispersion-prism",
@@ -113,6 +155,14 @@ PICTURES = (
         "blue and violet on the other.",
         dispersion_prism,
         3,
+    ),
+    Picture(
+        "spectrum",
+        "Spectrum of a prism",
+        "A narrow beam of white light, seen in thin smoke, is turned by a prism and fans out into a spectrum on a "
+        "screen: red is turned least, violet most.",
+        spectrum,
+        1,
     ),
     Picture(
         "graded-lenses",

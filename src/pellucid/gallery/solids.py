@@ -19,7 +19,13 @@ def glass_sphere() -> Scene:
     """A ball of N-BK7, 8 cm wide, on a chessboard with two painted balls behind it."""
     radius = 0.04
     ball = RefractiveVolume.from_sdf(
-        shapes.sphere(radius), "N-BK7", 96, 2.15 * radius, position=(0.0, radius + stage.GAP_M, 0.0), dispersion=False
+        shapes.sphere(radius),
+        "N-BK7",
+        96,
+        2.15 * radius,
+        position=(0.0, radius + stage.GAP_M, 0.0),
+        dispersion=False,
+        light=stage.QUICK_LIGHT,
     )
     board = stage.table(0.08, stage.checks((0.72, 0.68, 0.60), (0.02, 0.05, 0.075)), 60.0, roughness=0.4)
     sky, sun = stage.daylight()
@@ -52,7 +58,7 @@ def three_glass_cube() -> Scene:
     ]
     cube = RefractiveVolume.from_volume(
         volume.replace(regions=tuple(layers)), position=(0.0, 0.5 * size + stage.GAP_M, 0.0), rotation=(0.0, 31.0, 0.0),
-        dispersion=False, quality=Quality(bounces=6, min_weight=0.03),
+        dispersion=False, quality=Quality(bounces=6, min_weight=0.03), light=stage.QUICK_LIGHT,
     )  # fmt: skip
     return Scene(
         Camera((0.02, 0.088, 0.16), (0.0, 0.022, 0.0), fov_deg=28.0),
@@ -76,6 +82,7 @@ def lettered_block() -> Scene:
     body = RefractiveVolume.from_regions(
         glasses, 224, (1.05 * x, 1.12 * y, 1.15 * z), position=(0.0, 0.5 * y + stage.GAP_M, 0.0),
         rotation=(0.0, -16.0, 0.0), dispersion=False, quality=Quality(bounces=6, min_weight=0.02),
+        light=stage.QUICK_LIGHT,
     )  # fmt: skip
     cloth = stage.grid(512, 4, (0.62, 0.60, 0.55), (0.33, 0.15, 0.09), 0.09)
     return Scene(
@@ -95,7 +102,7 @@ def glass_hare() -> Scene:
     lowest = float(np.asarray(mesh[0])[:, 1].min())
     hare = RefractiveVolume.from_mesh(
         mesh, stage.tinted("N-BAK4", (13.0, 3.0, 6.0)), 144, position=(0.0, stage.GAP_M - lowest, 0.0),
-        rotation=(0.0, 28.0, 0.0), dispersion=False,
+        rotation=(0.0, 28.0, 0.0), dispersion=False, light=stage.QUICK_LIGHT,
     )  # fmt: skip
     sky, sun = stage.daylight()
     return Scene(
@@ -119,8 +126,8 @@ PICTURES = (
     Picture(
         "three-glass-cube",
         "Three glasses in one another",
-        "A clear rounded cube holds an amber one, and that a red one; light sparkles in their slightly milky insides, and "
-        "throws coloured patterns on the table.",
+        "A clear rounded cube holds an amber one, and that a red one; light sparkles in their slightly milky insides, "
+        "and throws coloured patterns on the table.",
         three_glass_cube,
         4,
     ),

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from pellucid import media
 from pellucid.fields.volume import Volume
 from pellucid.media import Medium
-from pellucid.scene import DirectionalLight, Environment, Mesh
+from pellucid.scene import DirectionalLight, Environment, LightQuality, Mesh
 
 Image = npt.NDArray[np.float32]
 Rgb = tuple[float, float, float]
@@ -21,6 +21,10 @@ KEY_DIRECTION = (0.567, -0.695, 0.443)
 
 #: Air between a body and its table: solids touch in a few points only, and rays must know what comes first.
 GAP_M = 2e-4
+
+
+#: Light for a picture of the gallery: a few times quicker than the default, and patterns nearly as fine.
+QUICK_LIGHT = LightQuality(front_voxels=3.0, split_voxels=2.0, min_flux=1e-2)
 
 
 def key_light(irradiance: float = 2.0) -> DirectionalLight:

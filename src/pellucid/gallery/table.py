@@ -18,6 +18,7 @@ def wine_glass() -> Scene:
     body = RefractiveVolume.from_regions(
         [(glass, "soda-lime glass"), (wine, claret)], 288, (0.086, 1.03 * height, 0.086),
         position=(0.0, 0.5 * height + stage.GAP_M, 0.0), dispersion=False,
+        light=stage.QUICK_LIGHT.replace(caustic_texels=512),
     )  # fmt: skip
     wall = Mesh.plane((6.0, 3.0), position=(0.0, 0.0, -0.9), rotation=(90.0, 0.0, 0.0), base_color=(0.13, 0.14, 0.16))
     plate = Mesh.box((0.14, 0.012, 0.11), position=(0.125, 0.006, -0.06), rotation=(0.0, 20.0, 0.0),
@@ -44,6 +45,7 @@ def brilliant() -> Scene:
     stone = RefractiveVolume.from_sdf(
         shapes.brilliant_cut(diameter), "diamond", 160, (1.06 * diameter, 0.72 * diameter, 1.06 * diameter),
         position=(0.0, 0.0047, 0.0), rotation=(24.0, 0.0, 0.0), quality=Quality(bounces=8, min_weight=0.02),
+        light=stage.QUICK_LIGHT,
     )  # fmt: skip
     slate = stage.stone(512, (0.012, 0.013, 0.017), 0.22)
     return Scene(
@@ -60,7 +62,7 @@ PICTURES = (
     Picture(
         "wine-glass",
         "Glass of red wine",
-        "A stemmed glass with dark red wine; the bowl shows the room upside down, the stem and the foot glitter.",
+        "A stemmed glass with red wine, lit from above; in its shadow on the table the wine gathers a red spot of light.",
         wine_glass,
         5,
     ),
