@@ -129,7 +129,7 @@ PICTURES = (
         "A clear rounded cube holds an amber one, and that a red one; light sparkles in their slightly milky insides, "
         "and throws coloured patterns on the table.",
         three_glass_cube,
-        4,
+        3,
     ),
     Picture(
         "lettered-block",

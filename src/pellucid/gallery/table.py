@@ -62,7 +62,7 @@ PICTURES = (
     Picture(
         "wine-glass",
         "Glass of red wine",
-        "A stemmed glass with red wine, lit from above; in its shadow on the table the wine gathers a red spot of light.",
+        "A stemmed glass with red wine, lit from above; in its shadow on the table the wine gathers a red spot.",
         wine_glass,
         5,
     ),
