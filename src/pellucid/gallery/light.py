@@ -62,7 +62,12 @@ def graded_lenses() -> Scene:
     radius = 0.04
     lenses = [
         RefractiveVolume.from_function(
-            index(radius), 128, 2.1 * radius, boundary="smooth", position=(x, 1.06 * radius, 0.0)
+            index(radius),
+            128,
+            2.1 * radius,
+            boundary="smooth",
+            position=(x, 1.06 * radius, 0.0),
+            light=stage.QUICK_LIGHT,
         )
         for index, x in ((shapes.luneburg, -0.05), (shapes.maxwell_fish_eye, 0.05))
     ]
@@ -89,6 +94,7 @@ def hot_air() -> Scene:
     plume = RefractiveVolume.from_function(
         shapes.hot_air(width, height, warmer_k=900.0, sway=1.6), 96, (0.13, height, 0.13), boundary="smooth",
         position=(0.0, 0.5 * height, 0.0), smoothing_voxels=0.0,
+        light=LightQuality(caustics=False),
     )  # fmt: skip
     sky, sun = stage.daylight(40.0, 160.0)
     ruled = stage.grid(2048, 64, (0.70, 0.68, 0.62), (0.02, 0.06, 0.18), 0.2)
