@@ -41,7 +41,7 @@ def write_gallery(demo: Path) -> None:
         write_jpeg(source, DOCS / "gallery" / f"{picture.name}.jpg", THUMBNAIL, 82)
     sheet = demo / "contact_sheet.png"
     spec = OpenImageIO.ImageBuf(str(sheet)).spec()
-    write_jpeg(sheet, DOCS / "demo.jpg", (SHEET_WIDTH, round(SHEET_WIDTH * spec.height / spec.width)), 85)
+    write_jpeg(sheet, DOCS / "demo.jpg", (SHEET_WIDTH, round(SHEET_WIDTH * spec.height / spec.width)), 82)
 
 
 def main() -> None:

@@ -15,19 +15,20 @@ PAPER = 24
 INK = 0.86
 
 
-def contact_sheet(pictures: Sequence[tuple[str, np.ndarray]], columns: int = 3) -> np.ndarray:
+def contact_sheet(pictures: Sequence[tuple[str, np.ndarray]], columns: int | None = None) -> np.ndarray:
     """Pictures in rows, each above its title.
 
     Parameters
     ----------
-    pictures : pairs of a title and (H, W, 3) uint8 pixels. columns : pictures in a row, at most.
+    pictures : pairs of a title and (H, W, 3) uint8 pixels. columns : pictures in a row, at most; if not
+        given three, or four when there are more than a dozen.
 
     Returns
     -------
     (H, W, 3) uint8.
     """
     small = [(title, _thumbnail(pixels)) for title, pixels in pictures]
-    columns = min(columns, len(small))
+    columns = min(columns or (3 if len(small) <= 12 else 4), len(small))
     height = max(pixels.shape[0] for _, pixels in small)
     cell_w, cell_h = THUMBNAIL_PX + GAP_PX, height + TITLE_PX + GAP_PX
     rows = math.ceil(len(small) / columns)
