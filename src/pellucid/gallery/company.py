@@ -52,7 +52,7 @@ def nine_spheres() -> Scene:
 
 def museum() -> Scene:
     """Five things of glass on plinths: lettering, an animal, cubes in one another, a ball, a glass of wine."""
-    light = stage.QUICK_LIGHT.replace(bounces=4, min_flux=0.03, caustic_texels=128)
+    light = stage.QUICK_LIGHT.replace(front_voxels=6.0, split_voxels=4.0, bounces=3, min_flux=0.05, caustic_texels=128)
     top = 0.9
     places = [(-0.31, 0.02), (-0.15, -0.13), (0.0, 0.06), (0.16, -0.13), (0.32, 0.03)]
     glass, wine = shapes.wine_glass(0.19, wall_m=0.0024, filled=0.4)
