@@ -6,7 +6,7 @@ import numpy as np
 
 from pellucid.fields import shapes
 from pellucid.fields.volume import Volume
-from pellucid.scene import Camera, Environment, Quality, RefractiveVolume, Scene
+from pellucid.scene import Camera, Environment, LightQuality, Quality, RefractiveVolume, Scene
 
 from . import stage
 from .picture import Picture
@@ -38,7 +38,7 @@ def calcite() -> Scene:
     spar = RefractiveVolume.from_sdf(
         rhomb, "calcite", 128, (0.078, 1.06 * tall, 0.078), optic_axis=axis,
         position=(0.0, 0.5 * tall + stage.GAP_M, 0.0), rotation=(0.0, 20.0, 0.0),
-        quality=Quality(bounces=6, min_weight=0.02),
+        quality=Quality(bounces=6, min_weight=0.02), light=stage.FACET_LIGHT,
     )  # fmt: skip
     return Scene(
         Camera((0.0, 0.155, 0.10), (0.0, 0.008, 0.002), fov_deg=28.0),
@@ -67,7 +67,10 @@ def tourmaline() -> Scene:
         ((0.0, lies, 0.003), (0.0, 0.0, 90.0)),
         ((0.019, lies, 0.0), (90.0, 0.0, 30.0)),
     ]
-    stones = [RefractiveVolume(prism, position=at, rotation=turn, quality=quality) for at, turn in places]
+    stones = [
+        RefractiveVolume(prism, position=at, rotation=turn, quality=quality, light=LightQuality(caustics=False))
+        for at, turn in places
+    ]
     return Scene(
         Camera((0.0, 0.034, 0.082), (0.0, 0.0035, 0.0), fov_deg=33.0, near_m=0.005),
         Environment.studio(),
