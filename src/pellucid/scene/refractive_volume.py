@@ -272,11 +272,11 @@ def _checked(given: Mapping[str, Any]) -> dict[str, Any]:
         "smoothing_voxels": lambda f, v: checks.number(f, v, low=0.0, high=8.0, unit="voxels"),
         "gradient": lambda f, v: checks.choice(f, v, ("central", "sobel")),
         "surroundings": lambda f, v: checks.choice(f, v, ("rays", "screen")),
-        "quality": _quality,
+        "quality": _one_of(Quality),
         "brdf": _brdf,
         "proxy": _proxy,
         "gloss": lambda f, v: checks.number(f, v, low=0.0, high=1.0),
-        "light": _light,
+        "light": _one_of(LightQuality),
         "center_m": checks.vector,
     }
     result = dict(given)
@@ -293,10 +293,13 @@ def _wavelengths(name: str, value: Any) -> int:
     return count
 
 
-def _quality(name: str, value: Any) -> Quality:
-    if not isinstance(value, Quality):
-        raise SceneError(name, f"cannot be {type(value).__name__!r}", "give Quality(...)")
-    return value
+def _one_of(kind: type) -> Callable[[str, Any], Any]:
+    def test(name: str, value: Any) -> Any:
+        if not isinstance(value, kind):
+            raise SceneError(name, f"cannot be {type(value).__name__!r}", f"give {kind.__name__}(...)")
+        return value
+
+    return test
 
 
 def _proxy(name: str, value: Any) -> str | Mesh:
@@ -309,12 +312,6 @@ def _proxy(name: str, value: Any) -> str | Mesh:
 def _brdf(name: str, value: Any) -> GGX | TabulatedBRDF | None:
     if value is not None and not isinstance(value, GGX | TabulatedBRDF):
         raise SceneError(name, f"cannot be {type(value).__name__!r}", "give GGX(...), TabulatedBRDF(...) or None")
-    return value
-
-
-def _light(name: str, value: Any) -> LightQuality:
-    if not isinstance(value, LightQuality):
-        raise SceneError(name, f"cannot be {type(value).__name__!r}", "give LightQuality(...)")
     return value
 
 

@@ -213,7 +213,7 @@ class LightSimulator:
         self._follow(encoder, followed, bound[number], start, None)
         if not several:
             if followed.lit.casts and land is not None:
-                encoder.copy_buffer_to_buffer(followed.sums["counters"], 0, self._outgoing_queue, 0, 16)
+                encoder.copy_buffer_to_buffer(followed.sums["counters"], 0, self._outgoing_queue, 0, LookCount.itemsize)
                 land(encoder, self._buffers["outgoing"], self._outgoing_queue)
             self.device.wgpu.queue.submit([encoder.finish()])
             return
