@@ -28,6 +28,9 @@ if TYPE_CHECKING:
         PointLight,
         Quality,
         RefractiveVolume,
+        ReliefLayer,
+        ReliefQuality,
+        ReliefSurface,
         Scene,
         TabulatedBRDF,
         load_scene,
@@ -39,7 +42,7 @@ if TYPE_CHECKING:
 
 _HOME = {
     "AreaLight": "scene", "Camera": "scene", "DirectionalLight": "scene", "Environment": "scene", "Mesh": "scene",
-    "LightQuality": "scene",
+    "LightQuality": "scene", "ReliefLayer": "scene", "ReliefQuality": "scene", "ReliefSurface": "scene",
     "PointLight": "scene", "Quality": "scene", "RefractiveVolume": "scene", "Scene": "scene",
     "GGX": "scene", "TabulatedBRDF": "scene", "load_scene": "scene", "save_scene": "scene",
     "Region": "fields.volume", "Volume": "fields.volume",
@@ -69,6 +72,9 @@ __all__ = [
     "Rays",
     "RefractiveVolume",
     "Region",
+    "ReliefLayer",
+    "ReliefQuality",
+    "ReliefSurface",
     "Renderer",
     "Scene",
     "SceneError",

@@ -28,6 +28,11 @@ _SOFTWARE_REMEDIES = {
     "Windows": "WARP is part of Windows 10 and later; update the system, or ask for any adapter instead",
 }
 _OPTIONAL_FEATURES = ("float32-filterable", "timestamp-query", "float32-blendable")
+# Asked for as far as the adapter has them; the standard ones are small.
+_RAISED_LIMITS = (
+    *("max-storage-buffer-binding-size", "max-buffer-size", "max-texture-dimension-3d"),
+    "max-sampled-textures-per-shader-stage",
+)
 _TEXEL: dict[str, tuple[type, int]] = {
     "rgba32float": (np.float32, 4),
     "rg32float": (np.float32, 2),
@@ -109,11 +114,7 @@ class Device:
         import wgpu
 
         wanted = [f for f in _OPTIONAL_FEATURES if f in adapter.features]
-        limits = {
-            name: adapter.limits[name]
-            for name in ("max-storage-buffer-binding-size", "max-buffer-size", "max-texture-dimension-3d")
-            if name in adapter.limits
-        }
+        limits = {name: adapter.limits[name] for name in _RAISED_LIMITS if name in adapter.limits}
         try:
             device = adapter.request_device_sync(required_features=wanted, required_limits=limits)
         except (RuntimeError, wgpu.GPUError) as error:

@@ -10,6 +10,8 @@ from pellucid.scene.mesh import Mesh
 from pellucid.scene.placement import Light, SceneObject
 from pellucid.scene.quality import Quality
 from pellucid.scene.refractive_volume import RefractiveVolume
+from pellucid.scene.relief_quality import ReliefQuality
+from pellucid.scene.relief_surface import ReliefLayer, ReliefSurface
 from pellucid.scene.scene import Scene
 
 __all__ = [
@@ -24,6 +26,9 @@ __all__ = [
     "PointLight",
     "Quality",
     "RefractiveVolume",
+    "ReliefLayer",
+    "ReliefQuality",
+    "ReliefSurface",
     "Scene",
     "SceneObject",
     "TabulatedBRDF",

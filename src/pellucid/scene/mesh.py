@@ -126,6 +126,19 @@ class Mesh(SceneObject):
         return cls(*shapes.sphere(radius, segments), **look, origin=origin)
 
     @classmethod
+    def torus(cls, radius_m: float = 0.5, tube_m: float = 0.2, segments: int = 64, **look: Any) -> Self:
+        """A ring around the y axis: the middle of its tube, of radius `tube_m`, goes round at `radius_m`.
+
+        `segments` (8 to 1024) faces go round the axis, half as many round the tube.
+        """
+        radius = checks.number("mesh.radius_m", radius_m, low=0.0, exclusive=True, unit="metres")
+        remedy = "the tube is thinner than the ring is wide"
+        tube = checks.number("mesh.tube_m", tube_m, low=0.0, high=radius, exclusive=True, unit="metres", remedy=remedy)
+        segments = checks.integer("mesh.segments", segments, low=8, high=1024)
+        recipe = {"kind": "torus", "radius_m": radius, "tube_m": tube, "segments": segments}
+        return cls(*shapes.torus(radius, tube, segments), **look, origin=Origin(recipe))
+
+    @classmethod
     def checkerboard(
         cls,
         size_m: float | tuple[float, float] = 2.0,

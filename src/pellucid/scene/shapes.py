@@ -55,6 +55,20 @@ def sphere(radius: float, segments: int) -> Triangles:
     return Triangles(normals * radius, faces, normals, np.stack([u, v], -1).reshape(-1, 2))
 
 
+def torus(radius: float, tube: float, segments: int) -> Triangles:
+    """A ring around the y axis; u runs round the axis, v round the tube, from the outer equator over the top."""
+    around = max(segments // 2, 4)
+    v, u = np.meshgrid(np.linspace(0.0, 1.0, around + 1), np.linspace(0.0, 1.0, segments + 1), indexing="ij")
+    turn, roll = 2.0 * np.pi * (u % 1.0), 2.0 * np.pi * (v % 1.0)  # both sides of a seam at the same place
+    outward = np.stack([np.sin(turn), np.zeros_like(turn), np.cos(turn)], -1)
+    normals = np.cos(roll)[..., None] * outward + np.sin(roll)[..., None] * (0.0, 1.0, 0.0)
+    vertices = (radius * outward + tube * normals).reshape(-1, 3)
+    first = (np.arange(around)[:, None] * (segments + 1) + np.arange(segments)).ravel()
+    above = first + segments + 1
+    faces = np.concatenate([np.stack([first, first + 1, above + 1], 1), np.stack([first, above + 1, above], 1)])
+    return Triangles(vertices, faces, normals.reshape(-1, 3), np.stack([u, v], -1).reshape(-1, 2))
+
+
 def checker_map(squares: int, light: tuple[float, ...], dark: tuple[float, ...]) -> np.ndarray:
     """(N, N, 3) float32 chessboard with enough texels that its edges look sharp, about 1024 on a side."""
     texels = max(1, round(1024 / squares))

@@ -1,0 +1,277 @@
+"""The passes of a relief: what each pixel sees of it, then the radiance of that."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pellucid.gpu import Device, RenderPass
+from pellucid.gpu.modules import source
+from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT, Targets
+from pellucid.scene.placement import placement_matrix
+from pellucid.scene.relief_quality import SEARCHES, STEPS, ReliefQuality, quality_of
+from pellucid.techniques.relief.diffuse import diffuse_tables
+from pellucid.techniques.relief.frames import Hull
+from pellucid.techniques.relief.layouts import ReliefParams
+from pellucid.techniques.relief.prepare import MARGIN, Maps, hull, maps
+
+if TYPE_CHECKING:
+    from pellucid.scene import Camera, ReliefSurface
+    from pellucid.surroundings import Surroundings
+
+HIT_FORMAT = "rgba32uint"
+DEPTHS = {"color": 0, "normal": 0, "offset": 1}  # of RELIEF_DEPTH; 2 for all others
+REFRACTIONS = ("search", "plane")
+REFLECTIONS = ("environment", "plane", "search")
+
+
+@dataclass
+class Body:
+    """A surface on the device.
+
+    Attributes
+    ----------
+    item : what the user described. quality : what its technique makes of its quality.
+    hull, maps : its geometry and its layers as arrays. bindings : resources of bind group 0 by their WGSL names.
+    """
+
+    item: ReliefSurface
+    quality: ReliefQuality
+    hull: Hull
+    maps: Maps
+    bindings: dict[str, Any]
+    geometry_key: list[Any]
+    maps_key: list[Any]
+    nbytes: int = 0
+    params: np.ndarray = field(default_factory=lambda: np.zeros((), ReliefParams))
+
+    @property
+    def step(self) -> str:
+        """Name of the step of the thesis's table that is drawn."""
+        return self.item.technique.removesuffix("_thesis")
+
+    @property
+    def two_layers(self) -> bool:
+        """Whether the translucent layer is drawn."""
+        return self.item.translucent is not None and STEPS.index(self.step) >= STEPS.index("two_layer")
+
+    @property
+    def constants(self) -> dict[str, float]:
+        """Override constants of all shaders of this body; none depends on what moves."""
+        quality = self.quality
+        return {
+            "TWO_LAYERS": float(self.two_layers),
+            "RELIEF_DEPTH": float(DEPTHS.get(self.step, 2)),
+            "RELIEF_NORMALS": float(self.step != "color"),
+            "RELIEF_SEARCH": float(SEARCHES.index(quality.search)),
+            "RELIEF_REFRACTION": float(REFRACTIONS.index(quality.refraction)),
+            "RELIEF_REFLECTION": float(REFLECTIONS.index(quality.reflection)),
+            "RELIEF_RAYS": float(quality.environment == "rays"),
+        }
+
+
+class ReliefTechnique:
+    """Draws `ReliefSurface` objects.
+
+    Attributes
+    ----------
+    bodies : what was prepared last.
+    """
+
+    def __init__(self, device: Device) -> None:
+        self.device = device
+        self.bodies: list[Body] = []
+        self._passes: dict[Any, RenderPass] = {}
+        self._hits: Any = None
+        self._nothing = _absent(device)
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of GPU memory held."""
+        hits = 0 if self._hits is None else 16 * self._hits.width * self._hits.height
+        return hits + sum(body.nbytes for body in self.bodies)
+
+    def prepare(self, items: Sequence[ReliefSurface], surroundings: Surroundings) -> None:
+        """Make maps and meshes resident that are new, and write the parameters of every surface."""
+        before = list(self.bodies)
+        self.bodies = [self._body(item, before) for item in items]
+        for body in self.bodies:
+            write_parameters(body)
+            self.device.write(body.bindings["relief"], body.params.reshape(1))
+
+    def illuminate(self, lights: Sequence[Any], surroundings: Surroundings) -> None:
+        """Light from the lamps' side; kept until lamps, heights or placement change."""
+
+    def draw(
+        self, encoder: Any, targets: Targets, camera: Camera, surroundings: Surroundings, timer: Any = None
+    ) -> None:
+        """Draw every surface into colour and depth, before what is there only where it is nearer."""
+        hits = self._hit_target(targets.size)
+        for body in self.bodies:
+            shared = {**self._nothing, **body.bindings, **surroundings.bindings}
+            self._pass("find", body.constants).run(
+                encoder,
+                color=[hits.create_view()],
+                depth=targets.depth_view,
+                clear=[(0.0, 0.0, 0.0, 0.0)],
+                bindings=shared,
+                vertices=len(body.hull.vertices),
+                timer=timer,
+                label="relief search",
+            )
+            self._pass("compose", {**body.constants, **surroundings.shading_constants}).run(
+                encoder,
+                color=[targets.color_view],
+                bindings={**shared, "relief_hits": hits},
+                timer=timer,
+                label="relief shade",
+            )
+
+    def _body(self, item: ReliefSurface, before: list[Body]) -> Body:
+        """A body whose geometry and maps are taken from those before where they are the same."""
+        geometry_key, bindings, nbytes = _geometry_key(item), {}, ReliefParams.itemsize
+        same = next((b for b in before if _same(b.geometry_key, geometry_key)), None)
+        shape = same.hull if same else hull(item)
+        if same:
+            bindings["relief_vertices"] = same.bindings["relief_vertices"]
+        else:
+            bindings["relief_vertices"] = self.device.buffer(shape.vertices, "storage", "relief vertices")
+        maps_key = _maps_key(item, shape.tile_m)
+        alike = next((b for b in before if _same(b.maps_key, maps_key)), None)
+        layers = alike.maps if alike else maps(item, shape.tile_m)
+        if alike:
+            bindings |= {name: alike.bindings[name] for name in MAP_NAMES}
+        else:
+            bindings |= self._upload(layers, item.tiling)
+        nbytes += shape.vertices.nbytes + sum(a.nbytes for a in (layers.heights, *layers.bounds))
+        nbytes += 8 * sum(level.shape[0] * level.shape[1] for level in (*layers.solid, *layers.translucent))
+        bindings["relief"] = self.device.buffer(ReliefParams.itemsize, "uniform", "relief")
+        quality = quality_of(item.technique, item.quality)
+        return Body(item, quality, shape, layers, bindings, geometry_key, maps_key, nbytes)
+
+    def _upload(self, layers: Maps, tiling: bool) -> dict[str, Any]:
+        address = "repeat" if tiling else "clamp"
+        filterable = self.device.float32_filterable
+        return {
+            "height_map": self._texture([layers.heights], "rg32float" if filterable else "rg16float", "heights"),
+            "height_sampler": self.device.sampler("linear", address),
+            "height_bounds": self._texture(layers.bounds, "rgba32float", "height bounds"),
+            "solid_surface": self._texture([_four(s) for s in layers.solid], "rgba16float", "solid slopes"),
+            "translucent_surface": self._texture([_four(s) for s in layers.translucent], "rgba16float", "slopes"),
+            "color_map": self._texture([_four(c) for c in layers.colors], "rgba16float", "colours"),
+            "surface_sampler": self.device.sampler("linear", address),
+        }
+
+    def _texture(self, levels: Sequence[np.ndarray], format: str, label: str) -> Any:
+        height, width = levels[0].shape[:2]
+        texture = self.device.texture(size=(width, height), format=format, mips=len(levels), label=label)
+        for mip, level in enumerate(levels):
+            self.device.write_texture(texture, level, mip=mip)
+        return texture
+
+    def _pass(self, name: str, constants: dict[str, float]) -> RenderPass:
+        module = f"techniques/relief/shaders/{name}"
+        text = source(module).text
+        used = {key: value for key, value in constants.items() if f"override {key}:" in text}
+        key = (name, *used.items())
+        if key not in self._passes:
+            options: dict[str, Any] = {"targets": (COLOR_FORMAT,)}
+            if name == "find":
+                options = {"targets": (HIT_FORMAT,), "depth": DEPTH_FORMAT, "depth_compare": "greater", "cull": "back"}
+            self._passes[key] = RenderPass(self.device, module, constants=used, nearest=("height_bounds",), **options)
+        return self._passes[key]
+
+    def _hit_target(self, size: tuple[int, int]) -> Any:
+        if self._hits is None or (self._hits.width, self._hits.height) != size:
+            usage = ("sample", "render")
+            self._hits = self.device.texture(size=size, format=HIT_FORMAT, usage=usage, label="relief hits")
+        return self._hits
+
+
+MAP_NAMES = (
+    *("height_map", "height_sampler", "height_bounds", "solid_surface", "translucent_surface"),
+    *("color_map", "surface_sampler"),
+)
+
+
+def write_parameters(body: Body) -> None:
+    """Fill the parameters of a body; cheap, since the sliders of a user end here."""
+    item, quality, p = body.item, body.quality, body.params
+    p["world_from_object"] = placement_matrix(item.position, item.rotation, 1.0).T
+    heights = body.maps.heights
+    p["texels"] = heights.shape[1], heights.shape[0]
+    p["tiling"], p["tile_m"] = item.tiling, body.hull.tile_m
+    low, high = heights.min(axis=(0, 1)), heights.max(axis=(0, 1))
+    p["solid_low"], p["translucent_low"] = low
+    p["solid_high"], p["translucent_high"] = high
+    p["hull_low"], p["hull_high"] = _hull_range(body, float(low[0]), float(high[0]), float(high[1]))
+    clips = item.edges == "clip"
+    p["clip_low"] = body.hull.clip_low if clips else (-1e9, -1e9)
+    p["clip_high"] = body.hull.clip_high if clips else (1e9, 1e9)
+    matter = item.matter
+    n = matter.n_rgb if item.dispersion else np.full(3, matter.n_d)
+    p["n_layer"], p["n_outside"], p["dispersion"] = n, item.ambient_n, item.dispersion and matter.is_dispersive
+    p["absorption"], p["scattering"] = item.absorption_per_m, item.scattering
+    p["specular_factor"] = 1.0 if item.specular_factor is None else item.specular_factor
+    p["solid_roughness"], p["solid_specular"] = item.solid.roughness, item.solid.specular
+    upper = item.translucent or item.solid
+    p["translucent_roughness"], p["translucent_specular"] = upper.roughness, upper.specular
+    p["linear_steps"], p["binary_steps"] = quality.linear_steps, quality.binary_steps
+    p["linear_approximation"] = quality.linear_approximation
+    p["refraction_linear"], p["refraction_binary"] = quality.refraction_steps
+    p["shadow_steps"], p["hue"] = quality.shadow_steps, quality.hue
+    p["adapt_angle"], p["adapt_distance"] = quality.adapt_angle, quality.adapt_distance
+    p["complexity"] = quality.complexity
+    p["color"] = (1.0, 1.0, 1.0) if isinstance(item.solid.colors, np.ndarray) else item.solid.colors
+    p["color_texels"] = max(body.maps.colors[0].shape[:2])
+    p["diffuse_down"], p["diffuse_back"] = diffuse_tables(item.ambient_n, n)
+
+
+def _hull_range(body: Body, low: float, high: float, upper: float) -> tuple[float, float]:
+    """Between which heights rays are followed; a little more than the layers need, so that rounding hides nothing."""
+    if DEPTHS.get(body.step, 2) != 2:
+        return 0.0, 0.0
+    top = max(high, upper) if body.two_layers else high
+    margin = max(MARGIN * (top - low), 1e-5 * max(abs(top), abs(low)), 1e-4 * min(body.hull.tile_m))
+    return low - margin, top + margin
+
+
+def _geometry_key(item: ReliefSurface) -> list[Any]:
+    mesh = item.mesh
+    return [mesh.vertices, mesh.faces, mesh.normals, mesh.uvs, item.tiles, item.tile_m, item.scale]
+
+
+def _maps_key(item: ReliefSurface, tile_m: tuple[float, float]) -> list[Any]:
+    out: list[Any] = [item.tiling, tile_m]
+    colors = item.solid.colors
+    out.append(colors if isinstance(colors, np.ndarray) else None)
+    for layer in (item.solid, item.translucent):
+        parts = ("heights", "height_m", "base_m", "normals", "normal_convention")
+        out += [None] * len(parts) if layer is None else [getattr(layer, name) for name in parts]
+    return out
+
+
+def _same(a: list[Any], b: list[Any]) -> bool:
+    """Arrays are told apart by identity: scene objects are values."""
+    return all(x is y or (not _is_array(x) and not _is_array(y) and x == y) for x, y in zip(a, b, strict=True))
+
+
+def _is_array(value: Any) -> bool:
+    return isinstance(value, np.ndarray)
+
+
+def _four(image: np.ndarray) -> np.ndarray:
+    missing = 4 - image.shape[2]
+    return np.pad(image, ((0, 0), (0, 0), (0, missing)), constant_values=1.0 if missing == 1 else 0.0)
+
+
+def _absent(device: Device) -> dict[str, Any]:
+    """One texel for every map that a surface may not have."""
+    image = device.texture(size=(1, 1), format="rgba16float", label="absent")
+    stack = device.texture(size=(1, 1), format="rgba16float", label="absent").create_view(dimension="2d-array")
+    volume = device.texture(format="r16float", size=(1, 1, 1), dimension="3d", label="absent")
+    names = ("cone_map", "complexity_map", "relief_caustic_map")
+    return {**{name: image for name in names}, "distance_map": volume, "horizon_map": stack, "light_map": stack}
