@@ -66,6 +66,7 @@ class DirectionalLightFile(Model):
     color: Triple = UNSET
     irradiance: Number = UNSET
     cast_shadow: StrictBool = UNSET
+    angular_radius_deg: Number = UNSET
 
 
 class PointLightFile(Model):

@@ -86,6 +86,7 @@ Light = struct(
         ("power", "vec3f"),  # irradiance, radiant intensity or radiance, by kind
         ("shadow_texel_m", "f32"),
         ("edge_u", "vec3f"),
+        ("radius", "f32"),  # tangent of the angle of a directional light; of the disc as large as an area light, m
         ("edge_v", "vec3f"),
         ("shadow_from_world", "mat4x4f"),
     ]

@@ -52,6 +52,7 @@ def _write_directional(
     towards = -_unit(light.direction)
     record["kind"], record["direction"] = LIGHT_DIRECTIONAL, towards
     record["power"] = np.asarray(light.color) * light.irradiance
+    record["radius"] = np.tan(np.radians(light.angular_radius_deg))
     casting = [casts_shadow(i, corners, towards) for i in range(len(corners))]
     if light.cast_shadow and any(casting) and len(casters) < MAX_SHADOWS:
         points = np.concatenate([c for c, casts in zip(corners, casting, strict=True) if casts])
@@ -70,6 +71,7 @@ def _write_point(record: np.ndarray, light: PointLight) -> None:
 def _write_area(record: np.ndarray, light: AreaLight) -> None:
     record["kind"], record["position"] = LIGHT_AREA, light.position
     record["edge_u"], record["edge_v"] = light.edge_u, light.edge_v
+    record["radius"] = np.sqrt(np.linalg.norm(np.cross(light.edge_u, light.edge_v)) / np.pi)
     record["direction"] = _unit(np.cross(light.edge_u, light.edge_v))
     record["power"] = np.asarray(light.color) * light.radiance
     record["shadow_layer"] = 0 if light.cast_shadow else -1
