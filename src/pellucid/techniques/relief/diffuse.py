@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from pellucid.optics import fresnel_dielectric
@@ -10,7 +12,8 @@ from pellucid.techniques.relief.layouts import DIFFUSE_ENTRIES
 POINTS = 256
 
 
-def diffuse_tables(n_outside: float, n_layer: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+@lru_cache(maxsize=16)
+def diffuse_tables(n_outside: float, n_layer: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarray]:
     """Shares of light at `DIFFUSE_ENTRIES` values of y = exp(-absorption depth) from 0 to 1, by channel.
 
     With m the cosine in the layer, F its Fresnel reflectance from inside, n the relative index of the layer:
@@ -23,7 +26,7 @@ def diffuse_tables(n_outside: float, n_layer: np.ndarray) -> tuple[np.ndarray, n
 
     Parameters
     ----------
-    n_outside, n_layer : indices; that of the layer (3,).
+    n_outside, n_layer : indices; that of the layer for red, green, blue.
 
     Returns
     -------

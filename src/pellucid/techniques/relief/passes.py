@@ -69,7 +69,6 @@ class Body:
             "RELIEF_SEARCH": float(SEARCHES.index(quality.search)),
             "RELIEF_REFRACTION": float(REFRACTIONS.index(quality.refraction)),
             "RELIEF_REFLECTION": float(REFLECTIONS.index(quality.reflection)),
-            "RELIEF_RAYS": float(quality.environment == "rays"),
         }
 
 
@@ -122,7 +121,9 @@ class ReliefTechnique:
                 timer=timer,
                 label="relief search",
             )
-            self._pass("compose", {**body.constants, **surroundings.shading_constants}).run(
+            rays = body.quality.environment == "rays" and surroundings.triangle_count > 0
+            constants = {**body.constants, **surroundings.shading_constants, "RELIEF_RAYS": float(rays)}
+            self._pass("compose", constants).run(
                 encoder,
                 color=[targets.color_view],
                 bindings={**shared, "relief_hits": hits},
@@ -204,7 +205,7 @@ def write_parameters(body: Body) -> None:
     heights = body.maps.heights
     p["texels"] = heights.shape[1], heights.shape[0]
     p["tiling"], p["tile_m"] = item.tiling, body.hull.tile_m
-    low, high = heights.min(axis=(0, 1)), heights.max(axis=(0, 1))
+    low, high = body.maps.low, body.maps.high
     p["solid_low"], p["translucent_low"] = low
     p["solid_high"], p["translucent_high"] = high
     p["hull_low"], p["hull_high"] = _hull_range(body, float(low[0]), float(high[0]), float(high[1]))
@@ -227,7 +228,7 @@ def write_parameters(body: Body) -> None:
     p["complexity"] = quality.complexity
     p["color"] = (1.0, 1.0, 1.0) if isinstance(item.solid.colors, np.ndarray) else item.solid.colors
     p["color_texels"] = max(body.maps.colors[0].shape[:2])
-    p["diffuse_down"], p["diffuse_back"] = diffuse_tables(item.ambient_n, n)
+    p["diffuse_down"], p["diffuse_back"] = diffuse_tables(item.ambient_n, (float(n[0]), float(n[1]), float(n[2])))
 
 
 def _hull_range(body: Body, low: float, high: float, upper: float) -> tuple[float, float]:

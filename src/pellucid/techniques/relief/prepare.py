@@ -23,13 +23,15 @@ class Maps:
 
     Attributes
     ----------
-    heights : (H, W, 2) float32 metres, solid and translucent.
+    heights : (H, W, 2) float32 metres, solid and translucent. low, high : their extremes (2,).
     bounds : levels of ``fields.heightfield.bounds_pyramid``.
     solid, translucent : levels of slopes (h, w, 2), metres a metre of the nominal tile.
     colors : levels (h, w, 3), linear.
     """
 
     heights: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
     bounds: list[np.ndarray]
     solid: list[np.ndarray]
     translucent: list[np.ndarray]
@@ -57,8 +59,11 @@ def maps(item: ReliefSurface, tile_m: tuple[float, float]) -> Maps:
     upper = layers[1] if translucent is not None else layers[0] - 1.0
     colors = solid.colors if isinstance(solid.colors, np.ndarray) else np.ones((1, 1, 3), np.float32)
     nothing = [np.zeros((1, 1, 2), np.float32)]
+    heights = np.stack([layers[0], upper], axis=-1).astype(np.float32)
     return Maps(
-        np.stack([layers[0], upper], axis=-1).astype(np.float32),
+        heights,
+        heights.min(axis=(0, 1)),
+        heights.max(axis=(0, 1)),
         bounds_pyramid(layers[0], upper if translucent is not None else None, item.tiling),
         levels(_slopes(solid, tile_m, item.tiling)),
         nothing if translucent is None else levels(_slopes(translucent, tile_m, item.tiling)),

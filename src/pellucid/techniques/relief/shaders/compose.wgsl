@@ -1,7 +1,11 @@
 // Second pass: the radiance of what each pixel sees of the relief.
 //!import surroundings/shaders/full_picture
 //!import techniques/relief/shaders/enter
-//!import techniques/relief/shaders/solid
+//!import techniques/relief/shaders/glints
+//!import techniques/relief/shaders/layer
+//!import techniques/relief/shaders/outside
+
+const RELIEF_GRAZING = 1e-3;  // least cosine between normal and view
 
 @fragment
 fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
@@ -20,9 +24,77 @@ fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
         uv = relief_offset(frame_at, direction_ws);
     }
     let footprint = relief_footprint(frame_at, p_ws, direction_ws);
-    var point = relief_solid_point(frame_at, uv, p_ws, footprint);
-    if bits.x == 0.0 && any(frame_at.wall_ws != vec3f(0.0)) {
-        point.n_ws = frame_at.wall_ws;
+    let on_wall = bits.x == 0.0 && any(frame_at.wall_ws != vec3f(0.0));
+    let h = relief_height_along(ray, bits.x);
+    if !TWO_LAYERS {
+        return vec4f(solid_alone(frame_at, uv, h, p_ws, direction_ws, footprint, on_wall), 1.0);
     }
-    return vec4f(relief_solid_dry(point, -direction_ws, footprint), 1.0);
+    let slopes = relief_translucent_slopes(uv, relief_surface_level(footprint));
+    let n_layer = select(relief_normal(frame_at, uv, slopes), frame_at.wall_ws, on_wall);
+    let n_ws = relief_towards(n_layer, direction_ws);
+    let reflected = relief_layer_reflectance(-dot(n_ws, direction_ws));
+    let at = LayerPoint(uv, h, p_ws, n_ws, direction_ws, footprint, reflected);
+    return vec4f(both_layers(frame_at, at, layer == RELIEF_SOLID, on_wall), 1.0);
+}
+
+// Refracted looks, one or three, then the mirrored one; or the solid layer itself. All are shaded in one place, since
+// every place that shades would be executed by all pixels.
+fn both_layers(frame_at: ReliefFrame, at: LayerPoint, is_solid: bool, on_wall: bool) -> vec3f {
+    var outside: OutsideLooks;
+    var radiance = vec3f(0.0);
+    let rays = select(1u, 3u, relief.dispersion != 0u);
+    let mirrors = select(0u, 1u, RELIEF_REFLECTION != 0u);
+    if RELIEF_REFLECTION == 0u {
+        let alpha = relief.translucent_roughness * relief.translucent_roughness;
+        outside.mirrored = OutsideLook(at.p_ws, reflect(at.direction_ws, at.n_ws), alpha, at.reflected);
+    }
+    for (var k = 0u; k < select(rays + mirrors, 1u, is_solid); k++) {
+        var look = SolidLook(at.uv, at.footprint, false, at.p_ws, -at.direction_ws, vec3f(1.0));
+        if !is_solid {
+            if RELIEF_REFLECTION != 0u && k == rays {
+                look = relief_reflect(frame_at, at, &outside);
+            } else {
+                look = relief_refract(frame_at, at, k, &outside);
+            }
+        }
+        if any(look.weight > vec3f(0.0)) {
+            let point = seen_point(frame_at, look.uv, at.h, look.p_ws, look.footprint, on_wall && is_solid);
+            radiance += look.weight * relief_solid_radiance(point, look.view_ws, look.footprint, look.wet);
+        }
+    }
+    if is_solid {
+        return radiance;
+    }
+    radiance += relief_glints(at.p_ws, at.n_ws, -at.direction_ws);
+    radiance += outside.mirrored.weight * outside_radiance(outside.mirrored);
+    if any(outside.passed.weight > vec3f(0.0)) {
+        radiance += outside.passed.weight * outside_radiance(outside.passed);
+    }
+    return radiance;
+}
+
+fn outside_radiance(look: OutsideLook) -> vec3f {
+    return relief_outside(look.origin_ws, look.direction_ws, look.alpha);
+}
+
+fn solid_alone(
+    frame_at: ReliefFrame, uv: vec2f, h: f32, p_ws: vec3f, direction_ws: vec3f, footprint: f32, cut: bool
+) -> vec3f {
+    let point = seen_point(frame_at, uv, h, p_ws, footprint, cut);
+    return relief_solid_radiance(point, -direction_ws, footprint, false);
+}
+
+// At an open border the surface is the cut
+fn seen_point(frame_at: ReliefFrame, uv: vec2f, h: f32, p_ws: vec3f, footprint: f32, cut: bool) -> ReliefPoint {
+    var point = relief_solid_point(frame_at, uv, p_ws, footprint);
+    point.n_ws = select(point.n_ws, frame_at.wall_ws, cut);
+    point.h = select(point.h, h, cut);
+    return point;
+}
+
+// A normal that leans away from the viewer is turned until it just faces them: interpolated slopes do not know what
+// the polygon hides
+fn relief_towards(n_ws: vec3f, direction_ws: vec3f) -> vec3f {
+    let facing = -dot(n_ws, direction_ws);
+    return select(n_ws, normalize(n_ws - (RELIEF_GRAZING - facing) * direction_ws), facing < RELIEF_GRAZING);
 }
