@@ -63,3 +63,8 @@ ReliefParams = struct(
         ("diffuse_back", ("vec4f", DIFFUSE_ENTRIES)),
     ]
 )
+
+# A ray of the caller: at t world metres it is at uv + t duv, h + t dh + t^2 bend
+ReliefAsked = struct(
+    [("uv", "vec2f"), ("duv", "vec2f"), ("h", "f32"), ("dh", "f32"), ("bend", "f32"), ("reach", "f32")]
+)

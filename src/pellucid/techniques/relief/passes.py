@@ -17,6 +17,7 @@ from pellucid.techniques.relief.diffuse import diffuse_tables
 from pellucid.techniques.relief.frames import Hull
 from pellucid.techniques.relief.layouts import ReliefParams
 from pellucid.techniques.relief.prepare import MARGIN, Maps, hull, maps
+from pellucid.techniques.relief.search_maps import search_bindings
 
 if TYPE_CHECKING:
     from pellucid.scene import Camera, ReliefSurface
@@ -56,7 +57,7 @@ class Body:
     @property
     def two_layers(self) -> bool:
         """Whether the translucent layer is drawn."""
-        return self.item.translucent is not None and STEPS.index(self.step) >= STEPS.index("two_layer")
+        return draws_two_layers(self.item)
 
     @property
     def constants(self) -> dict[str, float]:
@@ -70,6 +71,12 @@ class Body:
             "RELIEF_REFRACTION": float(REFRACTIONS.index(quality.refraction)),
             "RELIEF_REFLECTION": float(REFLECTIONS.index(quality.reflection)),
         }
+
+
+def draws_two_layers(item: ReliefSurface) -> bool:
+    """Whether there is a translucent layer, and the technique draws it."""
+    step = item.technique.removesuffix("_thesis")
+    return item.translucent is not None and STEPS.index(step) >= STEPS.index("two_layer")
 
 
 class ReliefTechnique:
@@ -140,17 +147,20 @@ class ReliefTechnique:
             bindings["relief_vertices"] = same.bindings["relief_vertices"]
         else:
             bindings["relief_vertices"] = self.device.buffer(shape.vertices, "storage", "relief vertices")
-        maps_key = _maps_key(item, shape.tile_m)
+        quality = quality_of(item.technique, item.quality)
+        two_layers = draws_two_layers(item)
+        maps_key = [*_maps_key(item, shape.tile_m), quality.search, quality.complexity, two_layers]
         alike = next((b for b in before if _same(b.maps_key, maps_key)), None)
-        layers = alike.maps if alike else maps(item, shape.tile_m)
+        layers = alike.maps if alike else maps(item, shape.tile_m, self.device.float32_filterable)
         if alike:
-            bindings |= {name: alike.bindings[name] for name in MAP_NAMES}
+            bindings |= {name: alike.bindings[name] for name in MAP_NAMES if name in alike.bindings}
         else:
             bindings |= self._upload(layers, item.tiling)
+            of_quality = (quality.search, quality.complexity)
+            bindings |= search_bindings(self.device, *of_quality, layers.heights, two_layers, shape.tile_m, item.tiling)
         nbytes += shape.vertices.nbytes + sum(a.nbytes for a in (layers.heights, *layers.bounds))
         nbytes += 8 * sum(level.shape[0] * level.shape[1] for level in (*layers.solid, *layers.translucent))
         bindings["relief"] = self.device.buffer(ReliefParams.itemsize, "uniform", "relief")
-        quality = quality_of(item.technique, item.quality)
         return Body(item, quality, shape, layers, bindings, geometry_key, maps_key, nbytes)
 
     def _upload(self, layers: Maps, tiling: bool) -> dict[str, Any]:
@@ -182,7 +192,9 @@ class ReliefTechnique:
             options: dict[str, Any] = {"targets": (COLOR_FORMAT,)}
             if name == "find":
                 options = {"targets": (HIT_FORMAT,), "depth": DEPTH_FORMAT, "depth_compare": "greater", "cull": "back"}
-            self._passes[key] = RenderPass(self.device, module, constants=used, nearest=("height_bounds",), **options)
+            self._passes[key] = RenderPass(
+                self.device, module, constants=used, nearest=("height_bounds", "cone_map"), **options
+            )
         return self._passes[key]
 
     def _hit_target(self, size: tuple[int, int]) -> Any:
@@ -194,7 +206,7 @@ class ReliefTechnique:
 
 MAP_NAMES = (
     *("height_map", "height_sampler", "height_bounds", "solid_surface", "translucent_surface"),
-    *("color_map", "surface_sampler"),
+    *("color_map", "surface_sampler", "cone_map", "distance_map", "complexity_map"),
 )
 
 

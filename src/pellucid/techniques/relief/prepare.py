@@ -50,12 +50,14 @@ def hull(item: ReliefSurface) -> Hull:
     return hull_of(vertices, faces, normals, uvs * tiles)
 
 
-def maps(item: ReliefSurface, tile_m: tuple[float, float]) -> Maps:
-    """The maps of a surface whose tiles are `tile_m` metres large in the mean."""
+def maps(item: ReliefSurface, tile_m: tuple[float, float], exact: bool = True) -> Maps:
+    """The maps of a surface whose tiles are `tile_m` metres large in the mean; heights as halves unless `exact`."""
     solid, translucent = item.solid, item.translucent
     layers = [solid.heights_m] if translucent is None else [solid.heights_m, translucent.heights_m]
     size = (max(h.shape[0] for h in layers), max(h.shape[1] for h in layers))
     layers = [resized_heights(h, size, item.tiling) for h in layers]
+    if not exact:  # bounds must hold for the heights that are drawn
+        layers = [np.asarray(h, np.float16).astype(np.float64) for h in layers]
     upper = layers[1] if translucent is not None else layers[0] - 1.0
     colors = solid.colors if isinstance(solid.colors, np.ndarray) else np.ones((1, 1, 3), np.float32)
     nothing = [np.zeros((1, 1, 2), np.float32)]
