@@ -21,8 +21,9 @@ ARROWS: dict[str, set[str]] = {
     "io": set(),
     "scene": {"media", "fields", "io"},
     "gpu": set(),
+    "simulation": {"fields", "gpu"},  # fields in motion, for any technique
     "surroundings": {"optics", "fields", "scene", "gpu"},
-    "techniques": {"optics", "spectra", "fields", "scene", "gpu", "surroundings"},
+    "techniques": {"optics", "spectra", "fields", "scene", "gpu", "surroundings", "simulation"},
     "frame": {"techniques", "surroundings", "scene", "gpu", "optics", "io"},  # it encodes and saves pictures
     "renderer": {"techniques", "surroundings", "scene", "gpu", "frame"},
 }

@@ -1,0 +1,318 @@
+"""Ripples: the wave equation on a rectangle of water, u_tt + 2 d u_t = c^2 (u_xx + u_zz) [landau1987, 12]."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from pellucid.errors import SceneError
+
+BOUNDARIES = ("reflect", "periodic", "absorb")
+#: c dt / h of the steps that are taken. The scheme is stable below 0.8 (see `Ripples`).
+COURANT = 0.5
+#: Width of the zone that absorbs, as a share of the shorter side.
+ABSORBING_SHARE = 0.15
+LARGEST = 4096
+MOST_STEPS = 1_000_000
+
+Array = npt.NDArray[Any]
+
+
+@dataclass(frozen=True)
+class Disturbance:
+    """A place at which the surface is pressed down at a time; see `Ripples.drop`."""
+
+    time_s: float
+    x_m: float
+    z_m: float
+    radius_m: float
+    strength_m: float
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How to get to a time.
+
+    restart : from water at rest. dents : (state at which it comes, what comes), in order. last : number of the last
+    state. rest_s : time that is left after it, less than a step.
+    """
+
+    restart: bool
+    dents: tuple[tuple[int, Disturbance], ...]
+    last: int
+    rest_s: float
+
+
+class Ripples:
+    """Small waves that all travel at one speed, as on shallow water, on a grid of square cells.
+
+    **Scheme.** Velocities w live half a step between displacements u: w += dt (c^2 L' u - 2 d w), u += dt w. With the
+    isotropic nine-point Laplacian L (error h^2/12 of the squared Laplacian) and the error of the leapfrog in time
+    (c^2 dt^2/12 of the same, of the other sign), L' = L - (h^2 - c^2 dt^2)/12 L L has neither: the phase speed errs in
+    fourth order [shubin1987]. It is stable up to c dt / h = 0.8; steps of `COURANT` are taken whatever is asked for.
+
+    L' is symmetric and its columns add up to 0, also at a border. So mass, the sum of u, is kept, and so is the energy
+    1/2 <w, w> - c^2/2 <u, L' u'> of neighbouring steps without damping, and falls with it.
+
+    x and z are metres from the centre of the rectangle, x along u, z downwards in the map: those of `Mesh.plane`.
+
+    Parameters
+    ----------
+    shape : (H, W) cells.
+    cell_m : edge of a cell, metres.
+    speed_m_s : of the waves; sqrt(9.81 depth) for water much shallower than the waves are long.
+    damping : 1/s; waves fade as exp(-damping t).
+    boundary : ``"reflect"``, ``"periodic"`` or ``"absorb"`` (waves fade in a zone along the border, which does not keep
+        the mass).
+    level_m : height of the water at rest, metres.
+    limit_m : heights that are given back are cut off so far above and below the level; the waves are not.
+    dtype : float32, as on the GPU, or float64.
+
+    Raises
+    ------
+    SceneError
+        A parameter is out of its range.
+    """
+
+    def __init__(
+        self,
+        shape: tuple[int, int],
+        cell_m: float,
+        speed_m_s: float = 0.3,
+        damping: float = 0.4,
+        boundary: str = "reflect",
+        level_m: float = 0.0,
+        limit_m: float = 0.02,
+        dtype: Any = np.float32,
+    ) -> None:
+        self.shape = _shape(shape)
+        self.cell_m = _number("cell_m", cell_m, low=1e-9)
+        self.speed_m_s = _number("speed_m_s", speed_m_s, low=1e-9)
+        self.damping = _number("damping", damping, low=0.0)
+        if boundary not in BOUNDARIES:
+            raise SceneError("boundary", f"is {boundary!r}", f"use one of {', '.join(BOUNDARIES)}")
+        if np.dtype(dtype) not in (np.dtype(np.float32), np.dtype(np.float64)):
+            raise SceneError("dtype", f"is {dtype!r}", "use float32 or float64")
+        self.boundary = boundary
+        self.level_m = _number("level_m", level_m)
+        self.limit_m = _number("limit_m", limit_m, low=1e-9)
+        self.dtype = np.dtype(dtype)
+        self.step_s = COURANT * self.cell_m / self.speed_m_s
+        self.friction = (self.damping + _absorption(self)).astype(self.dtype)
+        self.time_s = 0.0
+        self.disturbances: list[Disturbance] = []
+        self.displacement: Array = np.zeros(self.shape, self.dtype)
+        self.velocity: Array = np.zeros(self.shape, self.dtype)
+        self.steps_done = 0
+        self.applied: list[Disturbance] = []
+
+    # ---- what a relief asks for ------------------------------------------------------------------------------
+
+    @property
+    def tile_m(self) -> tuple[float, float]:
+        """Size along u and v, metres."""
+        return self.shape[1] * self.cell_m, self.shape[0] * self.cell_m
+
+    @property
+    def limits_m(self) -> tuple[float, float]:
+        """Lowest and highest height that is given back, metres."""
+        return self.level_m - self.limit_m, self.level_m + self.limit_m
+
+    def advance(self, time_s: float) -> npt.NDArray[np.float32]:
+        """Go to a time and give the heights there, (H, W) float32 metres.
+
+        Whole steps are taken up to that time, and what is given back is a part of one step further. For a time before
+        the last one everything is done again from the start.
+
+        Raises
+        ------
+        SceneError : the time is negative or not finite, or so late that it takes more than `MOST_STEPS` steps.
+        """
+        plan = self.schedule(time_s, self.steps_done, self.applied)
+        if plan.restart:
+            self._restart()
+        for state, disturbance in plan.dents:
+            self._steps_to(state)
+            self.displacement = self.displacement + self.dent(disturbance).astype(self.dtype)
+            self.applied.append(disturbance)
+        self._steps_to(plan.last)
+        self.time_s = float(time_s)
+        heights = self.level_m + self._part(plan.rest_s)
+        return np.clip(heights, *self.limits_m).astype(np.float32)
+
+    def step(self, dt: float) -> npt.NDArray[np.float32]:
+        """Go on by `dt` seconds, of any length, and give the heights."""
+        return self.advance(self.time_s + _number("dt", dt, low=0.0))
+
+    def drop(
+        self, x_m: float, z_m: float, radius_m: float, strength_m: float, time_s: float | None = None
+    ) -> Disturbance:
+        """Something falls into the water: a dent and a rim around it that holds what was pressed out.
+
+        Parameters
+        ----------
+        x_m, z_m : where, metres from the centre.
+        radius_m : of the dent, metres, at least a cell.
+        strength_m : depth of the dent, metres; negative for a hump.
+        time_s : when; now if not given. It may lie in the future.
+
+        Raises
+        ------
+        SceneError : it is outside of the water, smaller than a cell, or before now.
+        """
+        width, depth = self.tile_m
+        x = _number("x_m", x_m, low=-0.5 * width, high=0.5 * width)
+        z = _number("z_m", z_m, low=-0.5 * depth, high=0.5 * depth)
+        radius = _number("radius_m", radius_m, low=self.cell_m)
+        when = self.time_s if time_s is None else _number("time_s", time_s, low=self.time_s)
+        dropped = Disturbance(when, x, z, radius, _number("strength_m", strength_m))
+        self.disturbances.append(dropped)
+        self.disturbances.sort(key=lambda d: d.time_s)
+        return dropped
+
+    # ---- what the GPU does likewise --------------------------------------------------------------------------
+
+    def schedule(self, time_s: float, done: int, applied: Sequence[Disturbance]) -> Plan:
+        """What leads to a time, from a state that `done` steps and the dents `applied` have led to.
+
+        Raises
+        ------
+        SceneError : the time is negative or not finite, or takes too many steps.
+        """
+        time_s = _number("time_s", time_s, low=0.0)
+        last = int(self._states(time_s))
+        if last > MOST_STEPS:
+            raise SceneError("time_s", f"is {time_s:g}", f"takes more than {MOST_STEPS} steps of {self.step_s:g} s")
+        due = [(int(np.ceil(self._states(d.time_s))), d) for d in self.disturbances]
+        known = self.disturbances[: len(applied)] == list(applied)
+        restart = last < done or not known or any(state < done for state, _ in due[len(applied) :])
+        rest = max(0.0, time_s - last * self.step_s)
+        ahead = due if restart else due[len(applied) :]
+        return Plan(restart, tuple(pair for pair in ahead if pair[0] <= last), last, rest)
+
+    def dent(self, disturbance: Disturbance) -> Array:
+        """(H, W) float64 displacement of a drop, metres: -strength (k - s) exp(-s), s = (distance / radius)^2.
+
+        k, near 1, makes the sum zero: no water comes or goes.
+        """
+        s = self._distance2(disturbance)
+        return np.asarray(-disturbance.strength_m * (self.balance(disturbance) - s) * np.exp(-s))
+
+    def balance(self, disturbance: Disturbance) -> float:
+        """k of `dent`."""
+        s = self._distance2(disturbance)
+        bell = np.exp(-s)
+        return float((s * bell).sum() / bell.sum())
+
+    def _distance2(self, disturbance: Disturbance) -> Array:
+        """(H, W) squared distance in radii."""
+        rows, columns = self.shape
+        x = (np.arange(columns) + 0.5 - 0.5 * columns) * self.cell_m - disturbance.x_m
+        z = (np.arange(rows) + 0.5 - 0.5 * rows) * self.cell_m - disturbance.z_m
+        if self.boundary == "periodic":
+            width, depth = self.tile_m
+            x, z = x - width * np.round(x / width), z - depth * np.round(z / depth)
+        return np.asarray((z[:, None] ** 2 + x**2) / disturbance.radius_m**2)
+
+    def stencil(self) -> npt.NDArray[np.float64]:
+        """(5, 5) weights of c^2 L', 1/s^2."""
+        nine = np.array([[1.0, 4.0, 1.0], [4.0, -20.0, 4.0], [1.0, 4.0, 1.0]]) / (6.0 * self.cell_m**2)
+        wide = np.zeros((5, 5))
+        twice = np.zeros((5, 5))
+        wide[1:4, 1:4] = nine
+        for j in range(3):
+            for i in range(3):
+                twice[j : j + 3, i : i + 3] += nine[j, i] * nine
+        return np.asarray(self.speed_m_s**2 * (wide - self._correction() * twice))
+
+    # ---- state -----------------------------------------------------------------------------------------------
+
+    @property
+    def energy(self) -> float:
+        """1/2 of the integral of u_t^2 + c^2 |grad u|^2, m^4/s^2: energy over density and depth, times c^2."""
+        u, w = self.displacement.astype(np.float64), self.velocity.astype(np.float64)
+        potential = -float(((u - self.step_s * w) * self._acceleration(u)).sum())
+        return 0.5 * (float((w * w).sum()) + potential) * self.cell_m**2
+
+    @property
+    def volume_m3(self) -> float:
+        """Volume over the level, cubic metres: zero but for rounding, as drops displace no more than they raise."""
+        return float(self.displacement.sum(dtype=np.float64)) * self.cell_m**2
+
+    def _restart(self) -> None:
+        self.displacement = np.zeros(self.shape, self.dtype)
+        self.velocity = np.zeros(self.shape, self.dtype)
+        self.steps_done = 0
+        self.applied = []
+
+    def _states(self, time_s: float) -> float:
+        """A time in steps; a whole number but for its rounding is one."""
+        steps = time_s / self.step_s
+        return float(np.round(steps)) if abs(steps - np.round(steps)) < 1e-6 else steps
+
+    def _correction(self) -> float:
+        return (self.cell_m**2 - (self.speed_m_s * self.step_s) ** 2) / 12.0
+
+    def _laplacian(self, u: Array) -> Array:
+        p = np.pad(u, 1, mode="wrap" if self.boundary == "periodic" else "symmetric")
+        sides = p[1:-1, :-2] + p[1:-1, 2:] + p[:-2, 1:-1] + p[2:, 1:-1]
+        corners = p[:-2, :-2] + p[:-2, 2:] + p[2:, :-2] + p[2:, 2:]
+        return np.asarray((4.0 * sides + corners - 20.0 * u) * (1.0 / (6.0 * self.cell_m**2)))
+
+    def _acceleration(self, u: Array) -> Array:
+        once = self._laplacian(u)
+        return np.asarray(self.speed_m_s**2 * (once - self._correction() * self._laplacian(once)))
+
+    def _next_velocity(self) -> Array:
+        # Damping by the mean of both velocities: it never adds energy, however strong it is.
+        drag = self.friction * self.dtype.type(self.step_s)
+        push = self.dtype.type(self.step_s) * self._acceleration(self.displacement).astype(self.dtype)
+        return np.asarray((self.velocity * (1 - drag) + push) / (1 + drag))
+
+    def _steps_to(self, state: int) -> None:
+        for _ in range(state - self.steps_done):
+            self.velocity = self._next_velocity()
+            self.displacement = self.displacement + self.dtype.type(self.step_s) * self.velocity
+        self.steps_done = state
+
+    def _part(self, dt: float) -> Array:
+        """Displacement `dt` after the last state, less than a step; at a whole step it is the next state."""
+        if dt <= 0.0:
+            return self.displacement
+        following = self._next_velocity()
+        mean, gain = 0.5 * (self.velocity + following), following - self.velocity
+        return np.asarray(self.displacement + dt * mean + dt * dt / (2.0 * self.step_s) * gain)
+
+
+def _absorption(ripples: Ripples) -> Array:
+    """(H, W) 1/s: grows as the square of the depth in the zone; a wave that crosses it twice keeps 1/1000."""
+    rows, columns = ripples.shape
+    if ripples.boundary != "absorb":
+        return np.zeros(ripples.shape)
+    zone = max(4.0, ABSORBING_SHARE * min(rows, columns))
+    near = [np.minimum(np.arange(n) + 0.5, n - np.arange(n) - 0.5) for n in (rows, columns)]
+    deep = np.maximum(*(np.clip(1.0 - n / zone, 0.0, 1.0) for n in np.meshgrid(*near, indexing="ij")))
+    return np.asarray(1.5 * np.log(1000.0) * ripples.speed_m_s / (zone * ripples.cell_m) * deep**2)
+
+
+def _shape(shape: Any) -> tuple[int, int]:
+    try:
+        rows, columns = shape
+        whole = all(isinstance(n, int | np.integer) and not isinstance(n, bool) for n in (rows, columns))
+    except (TypeError, ValueError):
+        whole, rows, columns = False, 0, 0
+    if not whole or not (5 <= rows <= LARGEST and 5 <= columns <= LARGEST):
+        raise SceneError("shape", f"is {shape!r}", f"give (rows, columns), whole numbers from 5 to {LARGEST}")
+    return int(rows), int(columns)
+
+
+def _number(name: str, value: Any, low: float = -np.inf, high: float = np.inf) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
+        raise SceneError(name, f"is {value!r}", "give a number")
+    if not (np.isfinite(value) and low <= value <= high):
+        raise SceneError(name, f"is {float(value):g}", f"use {low:g} to {high:g}")
+    return float(value)
