@@ -22,6 +22,8 @@ from pellucid.scene.mesh import Mesh
 from pellucid.scene.placement import Light, Origin, SceneObject
 from pellucid.scene.quality import Quality
 from pellucid.scene.refractive_volume import RefractiveVolume
+from pellucid.scene.relief_quality import ReliefQuality
+from pellucid.scene.relief_surface import MAPS, ReliefLayer, ReliefSurface
 from pellucid.scene.scene import Scene
 
 CRYSTAL = ("optic_axis", "delta_n_e")
@@ -30,6 +32,7 @@ MESHES: dict[str, Callable[..., Mesh]] = {
     "plane": Mesh.plane,
     "box": Mesh.box,
     "sphere": Mesh.sphere,
+    "torus": Mesh.torus,
     "checkerboard": Mesh.checkerboard,
 }
 
@@ -80,6 +83,8 @@ def _environment(part: Any, folder: Path) -> Environment:
 
 
 def _object(part: Any, folder: Path) -> SceneObject:
+    if isinstance(part, schema.ReliefFile):
+        return _relief(part, folder)
     return _mesh(part, folder) if isinstance(part, schema.MeshBase) else _volume(part, folder)
 
 
@@ -199,6 +204,37 @@ def _stored_volume(part: schema.StoredVolume, folder: Path, look: dict[str, Any]
         arrays["ambient_n"] = part.ambient_n
     volume = Volume(extent_m=part.extent_m, regions=tuple(regions), **arrays)
     return RefractiveVolume(volume, **look)
+
+
+def _relief(part: schema.ReliefFile, folder: Path) -> ReliefSurface:
+    given = part.given("type", "mesh", "solid", "translucent", "medium", "quality")
+    if "quality" in part.model_fields_set:
+        given["quality"] = _valued(ReliefQuality, part.quality)
+    if "medium" in part.model_fields_set:
+        given["medium"] = substance(part.medium)
+    for name in {"solid", "translucent"} & part.model_fields_set:
+        given[name] = _relief_layer(getattr(part, name), folder, f"relief_surface.{name}")
+    return ReliefSurface(_mesh(part.mesh, folder), **given)
+
+
+def _relief_layer(part: schema.ReliefLayerFile, folder: Path, where: str) -> ReliefLayer:
+    from pellucid.io.volumes import read_arrays
+
+    given = part.given("arrays")
+    files = {name: folder / given[name] for name in MAPS if isinstance(given.get(name), str)}
+    if "arrays" in part.model_fields_set:
+        path = folder / part.arrays
+        arrays = read_arrays(path)
+        if not set(arrays) <= set(MAPS):
+            raise AssetError(path, f"holds {sorted(arrays)}, not a layer of a relief", f"it may hold {', '.join(MAPS)}")
+        given |= arrays
+    if "heights" not in given:
+        raise SceneError(f"{where}.heights", "are missing", "name a picture or a number, or arrays that hold them")
+    try:
+        return ReliefLayer(**(given | files))
+    except SceneError as error:
+        last = error.field.partition(".")[2] or error.field
+        raise SceneError(f"{where}.{last}", error.reason, error.remedy) from error
 
 
 def substance(part: str | float | schema.ColouredMedium) -> Medium:

@@ -39,8 +39,8 @@ class ReliefLayer(Value):
     normals : (H, W, 3) unit vectors, x to the right, y up, z out of the surface, or a picture in which 0 to 1 stand
         for -1 to 1. Worked out from the heights when None.
     colors : (H, W, 3) linear reflectance, a picture (sRGB when of 8 or 16 bits), or one linear colour.
-    roughness : 0 mirror-like to 1 matt. specular : reflectance of the coat at normal incidence, 0 to 1. Of the
-        translucent layer only the roughness counts: it is how large lamps look in it.
+    roughness : 0 mirror-like to 1 matt; None for 0.6, or 0.05 of a translucent layer. There it blurs what is mirrored.
+    specular : reflectance of the coat at normal incidence, 0 to 1; that of a translucent layer follows from its index.
     normal_convention : ``"directx"`` when y of the normals points down.
     files : the pictures that arrays were read from; filled in by reading.
 
@@ -54,7 +54,7 @@ class ReliefLayer(Value):
     base_m: float = 0.0
     normals: Any = None
     colors: Any = (0.8, 0.8, 0.8)
-    roughness: float = 0.6
+    roughness: float | None = None
     specular: float = 0.04
     normal_convention: str = "opengl"
     files: Mapping[str, tuple[str, np.ndarray]] = field(default_factory=dict, repr=False)
@@ -79,7 +79,9 @@ class ReliefLayer(Value):
             heights=_checked_heights(self.heights),
             normals=_checked_normals(self.normals),
             colors=_checked_colors(self.colors),
-            roughness=checks.number("relief_layer.roughness", self.roughness, low=0.0, high=1.0),
+            roughness=None
+            if self.roughness is None
+            else checks.number("relief_layer.roughness", self.roughness, low=0.0, high=1.0),
             specular=checks.number("relief_layer.specular", self.specular, low=0.0, high=1.0),
             normal_convention=checks.choice(
                 "relief_layer.normal_convention", self.normal_convention, NORMAL_CONVENTIONS

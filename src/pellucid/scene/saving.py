@@ -19,6 +19,7 @@ from pellucid.scene.environment import Environment
 from pellucid.scene.lights import AreaLight, DirectionalLight, PointLight
 from pellucid.scene.mesh import Mesh
 from pellucid.scene.refractive_volume import RefractiveVolume
+from pellucid.scene.relief_surface import MAPS, ReliefLayer, ReliefSurface
 from pellucid.scene.scene import Scene
 
 CRYSTAL = ("optic_axis", "delta_n_e")
@@ -32,6 +33,11 @@ LOOKS: dict[type, tuple[str, ...]] = {
         *("position", "rotation", "scale", "boundary", "dispersion", "spectral", "smoothing_voxels"),
         *("gradient", "surroundings", "quality", "light", "gloss"),
     ),
+    ReliefSurface: (
+        *("position", "rotation", "scale", "ambient_n", "tile_m", "tiles", "tiling", "technique", "quality"),
+        *("dispersion", "absorption", "scattering", "specular_factor", "edges"),
+    ),
+    ReliefLayer: ("height_m", "base_m", "roughness", "specular", "normal_convention"),
 }
 
 
@@ -154,6 +160,13 @@ def _object(thing: Any, label: str, index: int, beside: Sidecars) -> dict[str, A
             look.pop("boundary", None)  # what "auto" would choose
         look |= _brdf(thing.brdf, label, beside) | _proxy(thing.proxy, label, beside)
         return {"type": "refractive_volume", **source, **look}
+    if isinstance(thing, ReliefSurface):
+        layers = {"solid": _relief_layer(thing.solid, f"{label}.solid", beside)}
+        if thing.translucent is not None:
+            layers["translucent"] = _relief_layer(thing.translucent, f"{label}.translucent", beside)
+        medium = {"medium": describe_medium(thing.medium, f"objects[{index}].medium")}
+        mesh = _geometry(thing.mesh, f"{label}.mesh", beside) | _stated(thing.mesh, ("shading",))
+        return {"type": "relief_surface", "mesh": mesh, **layers, **medium, **_stated(thing, LOOKS[ReliefSurface])}
     raise SceneError(f"objects[{index}]", f"a {type(thing).__name__} cannot be written to a scene file")
 
 
@@ -171,13 +184,30 @@ def _brdf(brdf: GGX | TabulatedBRDF | None, label: str, beside: Sidecars) -> dic
     return {} if brdf is None else {"brdf": _plain(brdf)}
 
 
-def _mesh(mesh: Mesh, label: str, beside: Sidecars) -> dict[str, Any]:
+def _relief_layer(layer: ReliefLayer, label: str, beside: Sidecars) -> dict[str, Any]:
+    """Pictures by name, colours and heights that are one value as such, other maps as arrays."""
+    maps: dict[str, Any] = {name: getattr(layer, name) for name in MAPS if getattr(layer, name) is not None}
+    said: dict[str, Any] = {name: beside.relative(layer.files[name][0]) for name in MAPS if name in layer.files}
+    if layer.heights.size == 1 and "heights" not in said:
+        said["heights"] = float(layer.heights[0, 0])
+    if isinstance(layer.colors, tuple):
+        said["colors"] = list(layer.colors)
+    rest = {name: array for name, array in maps.items() if name not in said}
+    arrays = {"arrays": beside.arrays(label, rest)} if rest else {}
+    return said | arrays | _stated(layer, LOOKS[ReliefLayer])
+
+
+def _geometry(mesh: Mesh, label: str, beside: Sidecars) -> dict[str, Any]:
     if mesh.origin is None:
-        source: dict[str, Any] = {"arrays": beside.arrays(label, _arrays(mesh))}
-    else:
-        source = _plain(mesh.origin.recipe)
-        if "file" in source:
-            source["file"] = beside.relative(source["file"])
+        return {"arrays": beside.arrays(label, _arrays(mesh))}
+    source: dict[str, Any] = _plain(mesh.origin.recipe)
+    if "file" in source:
+        source["file"] = beside.relative(source["file"])
+    return source
+
+
+def _mesh(mesh: Mesh, label: str, beside: Sidecars) -> dict[str, Any]:
+    source = _geometry(mesh, label, beside)
     source["base_color"] = list(mesh.base_color)  # a file or a checkerboard brings along another default
     own = mesh.origin.base_color_map if mesh.origin else None
     if mesh.base_color_map is not own:

@@ -94,7 +94,7 @@ class Placed(Model):
 
 
 class MeshBase(Placed):
-    type: Literal["mesh"]
+    type: Literal["mesh"] = "mesh"  # may be left out where nothing but a mesh can stand
     base_color: Triple = UNSET
     base_color_map: StrictStr = UNSET
     roughness: Number = UNSET
@@ -125,6 +125,13 @@ class BoxMesh(MeshBase):
 class SphereMesh(MeshBase):
     kind: Literal["sphere"]
     radius_m: Number = UNSET
+    segments: StrictInt = UNSET
+
+
+class TorusMesh(MeshBase):
+    kind: Literal["torus"]
+    radius_m: Number = UNSET
+    tube_m: Number = UNSET
     segments: StrictInt = UNSET
 
 
@@ -231,6 +238,40 @@ class StoredVolume(VolumeBase):
     regions: list[RegionFile] = UNSET
 
 
+class ReliefQualityFile(Model):
+    search: StrictStr = UNSET
+    linear_steps: StrictInt = UNSET
+    binary_steps: StrictInt = UNSET
+    linear_approximation: StrictBool = UNSET
+    refraction_steps: tuple[StrictInt, StrictInt] = UNSET
+    refraction: StrictStr = UNSET
+    adapt_angle: StrictBool = UNSET
+    adapt_distance: StrictBool = UNSET
+    complexity: StrictBool = UNSET
+    reflection: StrictStr = UNSET
+    shadows: StrictStr = UNSET
+    shadow_steps: StrictInt = UNSET
+    occlusion: StrictStr = UNSET
+    hue: StrictBool = UNSET
+    caustics: StrictBool = UNSET
+    silhouettes: StrictBool = UNSET
+    environment: StrictStr = UNSET
+
+
+class ReliefLayerFile(Model):
+    """Heights and their look; ``arrays`` is an .npz with heights and perhaps normals and colors."""
+
+    heights: StrictStr | Number = UNSET
+    arrays: StrictStr = UNSET
+    height_m: Number = UNSET
+    base_m: Number = UNSET
+    normals: StrictStr = UNSET
+    colors: StrictStr | Triple = UNSET
+    roughness: Number = UNSET
+    specular: Number = UNSET
+    normal_convention: StrictStr = UNSET
+
+
 def _environment_tag(data: Any) -> str | None:
     return data.get("kind", "file" if "file" in data else None) if isinstance(data, dict) else None
 
@@ -242,12 +283,51 @@ def _object_tag(data: Any) -> str | None:
     kind = data.get("type")
     if kind == "mesh" and "kind" in data:
         return f"mesh.{data['kind']}"
-    sources = {"mesh": ("file", "arrays"), "refractive_volume": ("mesh", "array", "volume")}.get(str(kind), ())
+    sources = {
+        "mesh": ("file", "arrays"),
+        "refractive_volume": ("mesh", "array", "volume"),
+        "relief_surface": ("solid",),
+    }.get(str(kind), ())
     return next((f"{kind}.{source}" for source in sources if source in data), None)
 
 
 def _choose(tag: Any, message: str) -> Discriminator:
     return Discriminator(tag, custom_error_type="unknown_kind", custom_error_message=message)
+
+
+def _mesh_tag(data: Any) -> str | None:
+    return _object_tag({**data, "type": "mesh"}) if isinstance(data, dict) else None
+
+
+MeshFile = Annotated[
+    Annotated[MeshOfFile, Tag("mesh.file")]
+    | Annotated[MeshOfArrays, Tag("mesh.arrays")]
+    | Annotated[PlaneMesh, Tag("mesh.plane")]
+    | Annotated[BoxMesh, Tag("mesh.box")]
+    | Annotated[SphereMesh, Tag("mesh.sphere")]
+    | Annotated[TorusMesh, Tag("mesh.torus")]
+    | Annotated[CheckerboardMesh, Tag("mesh.checkerboard")],
+    _choose(_mesh_tag, 'needs "file", or "kind" = "plane", "box", "sphere" or "torus"'),
+]
+
+
+class ReliefFile(Placed):
+    type: Literal["relief_surface"]
+    mesh: MeshFile
+    solid: ReliefLayerFile
+    translucent: ReliefLayerFile = UNSET
+    medium: Substance = UNSET
+    ambient_n: Number = UNSET
+    tile_m: Number | tuple[Number, Number] = UNSET
+    tiles: Number | tuple[Number, Number] = UNSET
+    tiling: StrictBool = UNSET
+    technique: StrictStr = UNSET
+    quality: ReliefQualityFile = UNSET
+    dispersion: StrictBool = UNSET
+    absorption: Triple = UNSET
+    scattering: Number = UNSET
+    specular_factor: Number = UNSET
+    edges: StrictStr = UNSET
 
 
 EnvironmentFile = Annotated[
@@ -272,14 +352,16 @@ ObjectFile = Annotated[
     | Annotated[PlaneMesh, Tag("mesh.plane")]
     | Annotated[BoxMesh, Tag("mesh.box")]
     | Annotated[SphereMesh, Tag("mesh.sphere")]
+    | Annotated[TorusMesh, Tag("mesh.torus")]
     | Annotated[CheckerboardMesh, Tag("mesh.checkerboard")]
     | Annotated[VolumeOfMesh, Tag("refractive_volume.mesh")]
     | Annotated[VolumeOfArray, Tag("refractive_volume.array")]
-    | Annotated[StoredVolume, Tag("refractive_volume.volume")],
+    | Annotated[StoredVolume, Tag("refractive_volume.volume")]
+    | Annotated[ReliefFile, Tag("relief_surface.solid")],
     _choose(
         _object_tag,
-        'needs "type" = "mesh" with "file" or "kind" (plane, box, sphere, checkerboard), '
-        'or "type" = "refractive_volume" with "mesh" or "array"',
+        'needs "type" = "mesh" with "file" or "kind" (plane, box, sphere, torus, checkerboard), '
+        '"type" = "refractive_volume" with "mesh" or "array", or "type" = "relief_surface" with "solid"',
     ),
 ]
 

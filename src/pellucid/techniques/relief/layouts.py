@@ -46,7 +46,6 @@ ReliefParams = struct(
         ("solid_roughness", "f32"),
         ("solid_specular", "f32"),
         ("translucent_roughness", "f32"),
-        ("translucent_specular", "f32"),
         ("linear_steps", "u32"),
         ("binary_steps", "u32"),
         ("linear_approximation", "u32"),

@@ -20,11 +20,12 @@ from pellucid.techniques.relief.prepare import MARGIN, Maps, hull, maps
 from pellucid.techniques.relief.search_maps import search_bindings
 
 if TYPE_CHECKING:
-    from pellucid.scene import Camera, ReliefSurface
+    from pellucid.scene import Camera, ReliefLayer, ReliefSurface
     from pellucid.surroundings import Surroundings
 
 HIT_FORMAT = "rgba32uint"
 DEPTHS = {"color": 0, "normal": 0, "offset": 1}  # of RELIEF_DEPTH; 2 for all others
+SOLID_ROUGHNESS, TRANSLUCENT_ROUGHNESS = 0.6, 0.05  # unless the layer says
 REFRACTIONS = ("search", "plane")
 REFLECTIONS = ("environment", "plane", "search")
 
@@ -103,7 +104,7 @@ class ReliefTechnique:
     def prepare(self, items: Sequence[ReliefSurface], surroundings: Surroundings) -> None:
         """Make maps and meshes resident that are new, and write the parameters of every surface."""
         before = list(self.bodies)
-        self.bodies = [self._body(item, before) for item in items]
+        self.bodies = [self._body(item, before, number) for number, item in enumerate(items)]
         for body in self.bodies:
             write_parameters(body)
             self.device.write(body.bindings["relief"], body.params.reshape(1))
@@ -138,7 +139,7 @@ class ReliefTechnique:
                 label="relief shade",
             )
 
-    def _body(self, item: ReliefSurface, before: list[Body]) -> Body:
+    def _body(self, item: ReliefSurface, before: list[Body], number: int) -> Body:
         """A body whose geometry and maps are taken from those before where they are the same."""
         geometry_key, bindings, nbytes = _geometry_key(item), {}, ReliefParams.itemsize
         same = next((b for b in before if _same(b.geometry_key, geometry_key)), None)
@@ -160,7 +161,10 @@ class ReliefTechnique:
             bindings |= search_bindings(self.device, *of_quality, layers.heights, two_layers, shape.tile_m, item.tiling)
         nbytes += shape.vertices.nbytes + sum(a.nbytes for a in (layers.heights, *layers.bounds))
         nbytes += 8 * sum(level.shape[0] * level.shape[1] for level in (*layers.solid, *layers.translucent))
-        bindings["relief"] = self.device.buffer(ReliefParams.itemsize, "uniform", "relief")
+        if number < len(before):
+            bindings["relief"] = before[number].bindings["relief"]
+        else:
+            bindings["relief"] = self.device.buffer(ReliefParams.itemsize, "uniform", "relief")
         return Body(item, quality, shape, layers, bindings, geometry_key, maps_key, nbytes)
 
     def _upload(self, layers: Maps, tiling: bool) -> dict[str, Any]:
@@ -229,9 +233,8 @@ def write_parameters(body: Body) -> None:
     p["n_layer"], p["n_outside"], p["dispersion"] = n, item.ambient_n, item.dispersion and matter.is_dispersive
     p["absorption"], p["scattering"] = item.absorption_per_m, item.scattering
     p["specular_factor"] = 1.0 if item.specular_factor is None else item.specular_factor
-    p["solid_roughness"], p["solid_specular"] = item.solid.roughness, item.solid.specular
-    upper = item.translucent or item.solid
-    p["translucent_roughness"], p["translucent_specular"] = upper.roughness, upper.specular
+    p["solid_roughness"], p["solid_specular"] = _roughness(item.solid, SOLID_ROUGHNESS), item.solid.specular
+    p["translucent_roughness"] = _roughness(item.translucent, TRANSLUCENT_ROUGHNESS)
     p["linear_steps"], p["binary_steps"] = quality.linear_steps, quality.binary_steps
     p["linear_approximation"] = quality.linear_approximation
     p["refraction_linear"], p["refraction_binary"] = quality.refraction_steps
@@ -241,6 +244,10 @@ def write_parameters(body: Body) -> None:
     p["color"] = (1.0, 1.0, 1.0) if isinstance(item.solid.colors, np.ndarray) else item.solid.colors
     p["color_texels"] = max(body.maps.colors[0].shape[:2])
     p["diffuse_down"], p["diffuse_back"] = diffuse_tables(item.ambient_n, (float(n[0]), float(n[1]), float(n[2])))
+
+
+def _roughness(layer: ReliefLayer | None, unless_given: float) -> float:
+    return unless_given if layer is None or layer.roughness is None else layer.roughness
 
 
 def _hull_range(body: Body, low: float, high: float, upper: float) -> tuple[float, float]:
