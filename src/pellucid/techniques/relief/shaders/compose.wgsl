@@ -10,13 +10,21 @@ const RELIEF_GRAZING = 1e-3;  // least cosine between normal and view
 @fragment
 fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let record = textureLoad(relief_hits, vec2i(position.xy), 0);
-    let layer = record.w & 3u;
-    if layer == RELIEF_NONE {
+    var radiance = vec3f(0.0);
+    // Not by an early discard: a software driver would go on with the pixels that it takes out.
+    if (record.w & 3u) != RELIEF_NONE {
+        radiance = seen_radiance(position.xy, record);
+    } else {
         discard;
     }
+    return vec4f(radiance, 1.0);
+}
+
+fn seen_radiance(pixel: vec2f, record: vec4u) -> vec3f {
+    let layer = record.w & 3u;
     let bits = bitcast<vec3f>(record.xyz);
     let frame_at = relief_frame(record.w >> 2u, bits.yz);
-    let direction_ws = camera_ray(position.xy).direction;
+    let direction_ws = camera_ray(pixel).direction;
     let ray = relief_ray(frame_at, frame_at.uv, frame_at.h, direction_ws);
     let p_ws = frame_at.p_ws + bits.x * direction_ws;
     var uv = ray.uv + bits.x * ray.duv;
@@ -27,14 +35,14 @@ fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let on_wall = bits.x == 0.0 && any(frame_at.wall_ws != vec3f(0.0));
     let h = relief_height_along(ray, bits.x);
     if !TWO_LAYERS {
-        return vec4f(solid_alone(frame_at, uv, h, p_ws, direction_ws, footprint, on_wall), 1.0);
+        return solid_alone(frame_at, uv, h, p_ws, direction_ws, footprint, on_wall);
     }
     let slopes = relief_translucent_slopes(uv, relief_surface_level(footprint));
     let n_layer = select(relief_normal(frame_at, uv, slopes), frame_at.wall_ws, on_wall);
     let n_ws = relief_towards(n_layer, direction_ws);
     let reflected = relief_layer_reflectance(-dot(n_ws, direction_ws));
     let at = LayerPoint(uv, h, p_ws, n_ws, direction_ws, footprint, reflected);
-    return vec4f(both_layers(frame_at, at, layer == RELIEF_SOLID, on_wall), 1.0);
+    return both_layers(frame_at, at, layer == RELIEF_SOLID, on_wall);
 }
 
 // Refracted looks, one or three, then the mirrored one; or the solid layer itself. All are shaded in one place, since
