@@ -56,6 +56,7 @@ ReliefParams = struct(
         ("adapt_distance", "f32"),
         ("complexity", "f32"),
         ("hue", "f32"),
+        ("mapped_lights", "u32"),  # bit k: light k has a layer of light_map
         ("color", "vec3f"),  # multiplies the map
         ("color_texels", "f32"),  # a tile
         ("diffuse_down", ("vec4f", DIFFUSE_ENTRIES)),
@@ -66,4 +67,24 @@ ReliefParams = struct(
 # A ray of the caller: at t world metres it is at uv + t duv, h + t dh + t^2 bend
 ReliefAsked = struct(
     [("uv", "vec2f"), ("duv", "vec2f"), ("h", "f32"), ("dh", "f32"), ("bend", "f32"), ("reach", "f32")]
+)
+
+# The plane that a relief lies on, world; and the light that a pass is about.
+ReliefPlane = struct(
+    [
+        ("origin", "vec3f"),  # of texture coordinates and heights
+        ("light", "u32"),
+        ("tangent", "vec3f"),
+        ("bitangent", "vec3f"),
+        ("normal", "vec3f"),
+    ]
+)
+
+# A ray of a lamp that has entered the translucent layer at the centre of a texel.
+ReliefBeam = struct(
+    [
+        ("flux", "vec3f"),  # that reaches the solid layer; 1 is what a texel of a level surface receives
+        ("kind", "u32"),  # see shaders/caustic_bindings.wgsl
+        ("landed", "vec2f"),  # where, texels
+    ]
 )

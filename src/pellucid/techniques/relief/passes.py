@@ -16,6 +16,7 @@ from pellucid.scene.relief_quality import SEARCHES, STEPS, ReliefQuality, qualit
 from pellucid.techniques.relief.diffuse import diffuse_tables
 from pellucid.techniques.relief.frames import Hull
 from pellucid.techniques.relief.layouts import ReliefParams
+from pellucid.techniques.relief.light import LightMaps, LightPasses, light_constants, mapped_lights, plane_of
 from pellucid.techniques.relief.prepare import MARGIN, Maps, hull, maps
 from pellucid.techniques.relief.search_maps import search_bindings
 
@@ -38,6 +39,7 @@ class Body:
     ----------
     item : what the user described. quality : what its technique makes of its quality.
     hull, maps : its geometry and its layers as arrays. bindings : resources of bind group 0 by their WGSL names.
+    light_constants : override constants of how light of the lamps is found; filled in by `illuminate`.
     """
 
     item: ReliefSurface
@@ -49,6 +51,7 @@ class Body:
     maps_key: list[Any]
     nbytes: int = 0
     params: np.ndarray = field(default_factory=lambda: np.zeros((), ReliefParams))
+    light_constants: dict[str, float] = field(default_factory=dict)
 
     @property
     def step(self) -> str:
@@ -71,6 +74,7 @@ class Body:
             "RELIEF_SEARCH": float(SEARCHES.index(quality.search)),
             "RELIEF_REFRACTION": float(REFRACTIONS.index(quality.refraction)),
             "RELIEF_REFLECTION": float(REFLECTIONS.index(quality.reflection)),
+            **self.light_constants,
         }
 
 
@@ -94,12 +98,14 @@ class ReliefTechnique:
         self._passes: dict[Any, RenderPass] = {}
         self._hits: Any = None
         self._nothing = _absent(device)
+        self._light_passes = LightPasses(device)
+        self._light_maps: list[LightMaps] = []
 
     @property
     def nbytes(self) -> int:
         """Bytes of GPU memory held."""
         hits = 0 if self._hits is None else 16 * self._hits.width * self._hits.height
-        return hits + sum(body.nbytes for body in self.bodies)
+        return hits + sum(body.nbytes for body in self.bodies) + sum(maps.nbytes for maps in self._light_maps)
 
     def prepare(self, items: Sequence[ReliefSurface], surroundings: Surroundings) -> None:
         """Make maps and meshes resident that are new, and write the parameters of every surface."""
@@ -110,7 +116,33 @@ class ReliefTechnique:
             self.device.write(body.bindings["relief"], body.params.reshape(1))
 
     def illuminate(self, lights: Sequence[Any], surroundings: Surroundings) -> None:
-        """Light from the lamps' side; kept until lamps, heights or placement change."""
+        """Light from the lamps' side; kept until lamps, heights or placement change.
+
+        Maps are true where each texel stands for one place, or many alike: on plane meshes, for lamps far away or one
+        tile. Elsewhere every fragment sends rays.
+        """
+        while len(self._light_maps) < len(self.bodies):
+            self._light_maps.append(LightMaps(self._light_passes))
+        for body, light_maps in zip(self.bodies, self._light_maps, strict=False):
+            self._illuminate(body, light_maps, lights, surroundings)
+
+    def _illuminate(self, body: Body, light_maps: LightMaps, lights: Sequence[Any], surroundings: Surroundings) -> None:
+        plane = None
+        if body.quality.occlusion == "texture" or body.quality.caustics:
+            plane = plane_of(body.hull, body.params["world_from_object"].T)
+        mapped = 0 if plane is None else mapped_lights(lights, body.hull)
+        body.light_constants = light_constants(body.quality, lights, mapped)
+        body.params["mapped_lights"] = mapped
+        self.device.write(body.bindings["relief"], body.params.reshape(1))
+        if body.quality.shadows == "horizon":
+            kept = body.bindings["height_map"]
+            solid = body.maps.heights[..., 0]
+            body.bindings["horizon_map"] = light_maps.horizon(solid, body.hull.tile_m, body.item.tiling, kept)
+        if plane is not None and mapped:
+            bound = {**self._nothing, **body.bindings, **surroundings.bindings}
+            state = (tuple(lights), body.bindings["height_map"])
+            light_maps.update(bound, body.params, plane, len(lights), body.constants, state)
+        body.bindings |= light_maps.bindings
 
     def draw(
         self, encoder: Any, targets: Targets, camera: Camera, surroundings: Surroundings, timer: Any = None
@@ -293,5 +325,6 @@ def _absent(device: Device) -> dict[str, Any]:
     image = device.texture(size=(1, 1), format="rgba16float", label="absent")
     stack = device.texture(size=(1, 1), format="rgba16float", label="absent").create_view(dimension="2d-array")
     volume = device.texture(format="r16float", size=(1, 1, 1), dimension="3d", label="absent")
-    names = ("cone_map", "complexity_map", "relief_caustic_map")
-    return {**{name: image for name in names}, "distance_map": volume, "horizon_map": stack, "light_map": stack}
+    names = ("cone_map", "complexity_map")
+    stacks = ("horizon_map", "light_map", "relief_caustic_map")
+    return {name: image for name in names} | {name: stack for name in stacks} | {"distance_map": volume}

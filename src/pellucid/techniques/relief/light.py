@@ -1,0 +1,207 @@
+"""Light of the lamps on the solid layer of a relief, texel by texel, once a lamp has moved."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pellucid.fields.horizon import horizon_map
+from pellucid.gpu.kernel import ComputeKernel
+from pellucid.gpu.modules import source
+from pellucid.scene import DirectionalLight
+from pellucid.scene.relief_quality import SHADOWS, ReliefQuality
+from pellucid.techniques.relief.layouts import ReliefBeam, ReliefParams, ReliefPlane
+
+if TYPE_CHECKING:
+    from pellucid.gpu import Device
+    from pellucid.techniques.relief.frames import Hull
+
+SHADERS = "techniques/relief/shaders/"
+MAP_FORMAT = "rgba16float"
+MAPPED_LIGHTS = 32  # bits of ReliefParams.mapped_lights
+FLATNESS = 1e-4  # of the size of a mesh, and of its normals
+GROUP = 8
+CAUSTIC_PASSES = ("caustic_refract", "caustic_splat", "caustic_resolve")
+
+
+def plane_of(hull: Hull, world_from_object: np.ndarray) -> np.ndarray | None:
+    """The plane with one frame that a mesh lies on; light maps are true there.
+
+    Parameters
+    ----------
+    hull : of the mesh. world_from_object : (4, 4) without the scale, which the hull has already.
+
+    Returns
+    -------
+    () record of `layouts.ReliefPlane`, world; None for a mesh that is curved, or whose texture is stretched unevenly.
+    """
+    vertices = hull.vertices[hull.vertices["wall"] < 0.5]
+    frame = {name: vertices[name].astype(np.float64) for name in ("position", "normal", "tangent", "bitangent")}
+    mean = {name: values.mean(axis=0) for name, values in frame.items()}
+    offset = vertices["u"][:, None] * mean["tangent"] + vertices["v"][:, None] * mean["bitangent"]
+    origins = frame["position"] - offset
+    size = max(float(np.ptp(frame["position"], axis=0).max()), 1e-12)
+    turned = float(np.abs(frame["normal"] - mean["normal"]).max())
+    if np.abs(origins - origins.mean(axis=0)).max() > FLATNESS * size or turned > FLATNESS:
+        return None
+    plane, world = np.zeros((), ReliefPlane), np.asarray(world_from_object, np.float64)
+    plane["origin"] = world[:3, :3] @ origins.mean(axis=0) + world[:3, 3]
+    plane["tangent"], plane["bitangent"] = world[:3, :3] @ mean["tangent"], world[:3, :3] @ mean["bitangent"]
+    plane["normal"] = world[:3, :3] @ (mean["normal"] / np.linalg.norm(mean["normal"]))
+    return plane
+
+
+def mapped_lights(lamps: Sequence[object], hull: Hull) -> int:
+    """Bits of the lamps whose light is the same in each tile of a plane: all of them where there is one tile."""
+    u, v = hull.vertices["u"], hull.vertices["v"]
+    slack = 1e-4
+    one_tile = min(u.min(), v.min()) >= -slack and max(u.max(), v.max()) <= 1.0 + slack
+    return sum(1 << k for k, lamp in enumerate(lamps[:MAPPED_LIGHTS]) if one_tile or isinstance(lamp, DirectionalLight))
+
+
+def light_constants(quality: ReliefQuality, lamps: Sequence[object], mapped: int) -> dict[str, float]:
+    """Override constants of the shaders of light; the place of a lamp is not among them.
+
+    Parameters
+    ----------
+    mapped : bits of the lamps that have a layer of the light map.
+    """
+    occluded = quality.occlusion != "none"
+    # Light that is followed through the translucent layer is stopped by the solid one as well.
+    shadows = "hard" if occluded and quality.shadows == "none" else quality.shadows
+    all_mapped = mapped == (1 << len(lamps)) - 1
+    return {
+        "RELIEF_SHADOWS": float(SHADOWS.index(shadows)),
+        "RELIEF_OCCLUSION": float(occluded),
+        "RELIEF_LIGHT_STEPPED": float(quality.search == "linear"),
+        "RELIEF_LIGHT_MAPS": float(mapped != 0),
+        "RELIEF_LIGHT_RAYS": float(shadows != "none" and not all_mapped),
+        "RELIEF_CAUSTICS": float(quality.caustics and mapped != 0),
+    }
+
+
+class LightPasses:
+    """The kernels of light maps, one set for each choice of shadows and occlusion."""
+
+    def __init__(self, device: Device) -> None:
+        self.device = device
+        self._kernels: dict[tuple[Any, ...], ComputeKernel] = {}
+
+    def run(self, name: str, constants: Mapping[str, float], groups: tuple[int, int, int], bound: Any) -> None:
+        """Run the kernel of a file; constants that it does not declare are left out."""
+        module = SHADERS + name
+        used = {key: value for key, value in constants.items() if f"override {key}:" in source(module).text}
+        key = (name, *used.items())
+        if key not in self._kernels:
+            self._kernels[key] = ComputeKernel(self.device, module, constants=used, nearest=("height_bounds",))
+        self._kernels[key].run(groups, bound)
+
+
+class LightMaps:
+    """Light maps of one relief: a layer a lamp, each as large as the map of heights.
+
+    Attributes
+    ----------
+    light_map, caustic_map : textures, one texel while there are none.
+    runs : how often they were computed.
+    """
+
+    def __init__(self, passes: LightPasses) -> None:
+        self.passes = passes
+        self.runs = 0
+        self.nbytes = 0
+        self._size: tuple[int, int, int, bool] | None = None
+        self._state: Any = None
+        self._planes: list[Any] = []
+        self._horizon: tuple[Any, Any] | None = None
+        self._params = passes.device.buffer(ReliefParams.itemsize, "uniform", "relief of light maps")
+        self._allocate((1, 1, 1, False))
+
+    @property
+    def bindings(self) -> dict[str, Any]:
+        """Views to bind in the shaders that read the maps."""
+        return {"light_map": self._light_view, "relief_caustic_map": self._caustic_view}
+
+    def update(
+        self,
+        bound: Mapping[str, Any],
+        params: np.ndarray,
+        plane: np.ndarray,
+        lights: int,
+        constants: Mapping[str, float],
+        state: Any,
+    ) -> bool:
+        """Compute the maps of all lamps, unless all is as it was at the last call; tells whether it did.
+
+        Parameters
+        ----------
+        bound : resources of groups 0 and 1. params : () record of `layouts.ReliefParams`. plane : see `plane_of`.
+        lights : how many lamps there are. constants : of the shaders. state : what else light depends on.
+        """
+        caustics = constants["RELIEF_CAUSTICS"] != 0.0
+        texels = (int(params["texels"][0]), int(params["texels"][1]))
+        state = (params.tobytes(), plane.tobytes(), dict(constants), state)
+        self._allocate((*texels, max(lights, 1), caustics))
+        if state == self._state or not lights:
+            return False
+        self._write_planes(plane, lights)
+        endless = params.copy()
+        if params["tiling"]:
+            # All tiles share one map: that of a tile in the midst of many.
+            endless["clip_low"], endless["clip_high"] = -1e9, 1e9
+        self.passes.device.write(self._params, endless.reshape(1))
+        width, height = (-(-side // GROUP) for side in texels)
+        bound = {**bound, "relief": self._params}
+        own = {"light_map_out": self._light_view, "plane": self._planes[0]}
+        self.passes.run("light_map", constants, (width, height, lights), {**bound, **own})
+        own = {
+            "caustic_beams": self._beams, "caustic_sums": self._sums, "caustic_map_out": self._caustic_view
+        }  # fmt: skip
+        for light in range(lights if caustics else 0):
+            for name in CAUSTIC_PASSES:
+                bound_here = {**bound, **own, "plane": self._planes[light]}
+                self.passes.run(name, constants, (width, height, 1), bound_here)
+        self._state = state
+        self.runs += 1
+        return True
+
+    def horizon(self, heights: np.ndarray, tile_m: tuple[float, float], tiling: bool, kept: Any) -> Any:
+        """View of the horizon map of the solid layer; `kept` is the texture that it belongs to."""
+        if self._horizon is None or self._horizon[0] is not kept:
+            rows, columns = heights.shape
+            stack = horizon_map(heights, (tile_m[0] / columns, tile_m[1] / rows), tiling)
+            texture = self.passes.device.texture(
+                size=(columns, rows), format="r16float", layers=len(stack), label="horizons"
+            )
+            self.passes.device.write_texture(texture, stack[..., None].astype(np.float16))
+            self._horizon = kept, texture.create_view(dimension="2d-array")
+        return self._horizon[1]
+
+    def _allocate(self, size: tuple[int, int, int, bool]) -> None:
+        if size == self._size:
+            return
+        width, height, layers, caustics = size
+        self.light_map = self._texture((width, height), layers, "light map")
+        self.caustic_map = self._texture((width, height) if caustics else (1, 1), layers, "caustic map")
+        self._light_view = self.light_map.create_view(dimension="2d-array")
+        self._caustic_view = self.caustic_map.create_view(dimension="2d-array")
+        texels = width * height if caustics else 1
+        device = self.passes.device
+        self._beams = device.buffer(ReliefBeam.itemsize * texels, label="caustic beams")
+        self._sums = device.buffer(np.zeros(3 * texels, np.uint32), label="caustic sums")
+        self.nbytes = 8 * layers * (width * height + texels) + (ReliefBeam.itemsize + 12) * texels
+        self._size, self._state = size, None
+
+    def _texture(self, size: tuple[int, int], layers: int, label: str) -> Any:
+        usage = ("sample", "storage")
+        return self.passes.device.texture(size=size, format=MAP_FORMAT, layers=layers, usage=usage, label=label)
+
+    def _write_planes(self, plane: np.ndarray, lights: int) -> None:
+        while len(self._planes) < lights:
+            self._planes.append(self.passes.device.buffer(ReliefPlane.itemsize, "uniform", "relief plane"))
+        for light in range(lights):
+            record = plane.copy()
+            record["light"] = light
+            self.passes.device.write(self._planes[light], record.reshape(1))
