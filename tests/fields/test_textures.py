@@ -11,7 +11,6 @@ import pytest
 from pellucid.errors import SceneError
 from pellucid.fields import textures
 from pellucid.fields.textures import Maps
-from pellucid.fields.textures.liquids import CAPILLARY_LENGTH_M, cap_volume, meniscus
 from pellucid.fields.textures.maps import normals_of
 
 NAMES = ["bricks", "brushed_metal", "cobbles", "drops", "hammered_glass", "puddles", "skin", "tiles"]
@@ -134,27 +133,6 @@ def test_drops_meet_the_plane_at_the_contact_angle(angle_deg: float) -> None:
     rim = (heights > 0) & (np.roll(heights, 1, 1) <= 0)
     # Half a texel x inside, a cap has the slope r / sqrt((r / tan theta)^2 + 2 r x): 2.5 degrees less at 80 degrees.
     assert np.degrees(np.arctan(np.median(slope[rim]))) == pytest.approx(angle_deg, abs=3.0)
-
-
-@pytest.mark.parametrize("angle", [0.3, 1.0, 1.4])
-def test_a_small_drop_is_a_spherical_cap_of_its_volume(angle: float) -> None:
-    rim = 1e-4  # a volume of nanolitres: gravity takes less than 1e-4 of its height
-    rho = (np.arange(4000) + 0.5) / 4000 * rim
-    within = (rim**2 - rho**2) / (2 * rim)
-    height = meniscus(within, np.full_like(rho, rim), angle)
-    ball = rim / np.sin(angle)
-    np.testing.assert_allclose(height, np.sqrt(ball**2 - rho**2) - ball * np.cos(angle), rtol=1e-4)
-    volume = (2 * np.pi * rho * height).sum() * rim / 4000
-    assert volume == pytest.approx(float(cap_volume(rim, angle)), rel=1e-4)
-
-
-def test_a_hemisphere_has_two_thirds_pi() -> None:
-    assert float(cap_volume(1.0, np.pi / 2)) == pytest.approx(2 * np.pi / 3)
-
-
-def test_gravity_flattens_a_wide_drop_to_the_height_of_a_puddle() -> None:
-    height = meniscus(np.array([0.5]), np.array([1.0]), 1.0)
-    assert height[0] == pytest.approx(2 * CAPILLARY_LENGTH_M * np.sin(0.5), rel=1e-6)
 
 
 @pytest.mark.parametrize("coverage", [0.1, 0.3, 0.5])

@@ -8,43 +8,10 @@ from typing import Any
 import numpy as np
 
 from pellucid.errors import SceneError
+from pellucid.fields.sessile import check_angle, meniscus, merge, rims_of
 
-from .maps import Maps, Values, color, grid, number, places, ramp
+from .maps import Maps, color, grid, number, places
 from .noise import octaves
-
-#: sqrt(surface tension / (density g)) of water at 20 degrees, metres [degennes2004, 2.2].
-CAPILLARY_LENGTH_M = 0.00272
-
-
-def cap_volume(rim_m: Values | float, contact_angle: float) -> Values:
-    """Volume of a spherical cap on a plane, cubic metres [degennes2004, 1.1].
-
-    pi r^3 (2 - 3 cos + cos^3) / (3 sin^3), r the radius of its rim.
-    """
-    cos, sin = np.cos(contact_angle), np.sin(contact_angle)
-    return np.asarray(np.pi * np.asarray(rim_m) ** 3 * (2.0 - 3.0 * cos + cos**3) / (3.0 * sin**3))
-
-
-def meniscus(within: Values, rim_m: Values, contact_angle: float) -> Values:
-    """Height of a drop over the plane that it lies on, metres; below its rim the tangent goes on downwards.
-
-    With R = r / sin(theta) a spherical cap is h = sqrt(R^2 - rho^2) - R cos(theta). Written with
-    F = (r^2 - rho^2) / (2 r), which falls by one metre a metre at the rim, it is
-
-        h = sqrt((r / tan(theta))^2 + 2 r F) - r / tan(theta)
-
-    and F may come from several drops that merge: dh/dF = tan(theta) wherever F = 0. Gravity keeps drops lower than
-    a wide puddle, 2 a sin(theta / 2) with a the capillary length [degennes2004, 2.2], and leaves the rim as it is.
-
-    Parameters
-    ----------
-    within : F, metres, negative outside. rim_m : r, metres. contact_angle : theta, radians, below a right angle.
-    """
-    flat = np.asarray(rim_m) / np.tan(contact_angle)
-    cap = np.sqrt(flat * flat + 2.0 * rim_m * np.maximum(within, 0.0)) - flat
-    most = 2.0 * CAPILLARY_LENGTH_M * np.sin(0.5 * contact_angle)
-    cap = cap / (1.0 + (cap / most) ** 3) ** (1.0 / 3.0)
-    return np.where(within > 0.0, cap, within * np.tan(contact_angle))
 
 
 def drops(
@@ -78,13 +45,13 @@ def drops(
     """
     size, rng, tile_m = grid(size, seed, tile_m)
     coverage = number("coverage", coverage, low=0.0, high=0.8)
-    angle = np.radians(number("contact_angle_deg", contact_angle_deg, low=5.0, high=85.0, unit="degrees"))
+    angle = check_angle("contact_angle_deg", contact_angle_deg)
     below_m = number("below_m", below_m, low=1e-6, unit="metres")
     small, large = (number("volumes_ul", v, low=1e-6, unit="microlitres") * 1e-9 for v in _pair(volumes_ul))
     tinted = color("tint", tint)
     if small > large:
         raise SceneError("volumes_ul", f"is {volumes_ul}", "give the smaller volume first")
-    rims = np.cbrt(np.array([small, large]) / cap_volume(1.0, angle))
+    rims = rims_of([small, large], angle)
     if rims[1] < 2.0 * tile_m / size:
         raise SceneError(
             "volumes_ul", "are less than two texels wide", "use larger drops, more texels or a smaller tile"
@@ -109,9 +76,9 @@ def drops(
         for n, (dx, dy, part) in enumerate(_lobes(radius, rng)):
             du = u - x - dx / tile_m
             dv = v - y - dy / tile_m
-            _merge(within, rim, np.hypot(du - np.round(du), dv - np.round(dv)) * tile_m, part, 1.8 if n else 0.6)
+            merge(within, rim, np.hypot(du - np.round(du), dv - np.round(dv)) * tile_m, part, 1.8 if n else 0.6)
         progress = np.count_nonzero(within > 0.0) / (coverage * size * size)
-    heights = np.maximum(meniscus(within, rim, float(angle)), -below_m)
+    heights = np.maximum(meniscus(within, rim, angle), -below_m)
     return Maps.of(heights, tinted, tile_m)
 
 
@@ -149,7 +116,7 @@ def puddles(
     size, rng, tile_m = grid(size, seed, tile_m)
     coverage = number("coverage", coverage, low=0.0, high=1.0)
     depth_m = number("depth_m", depth_m, low=1e-6, unit="metres")
-    angle = np.radians(number("contact_angle_deg", contact_angle_deg, low=5.0, high=85.0, unit="degrees"))
+    angle = check_angle("contact_angle_deg", contact_angle_deg)
     below_m = number("below_m", below_m, low=1e-6, unit="metres")
     tinted = color("tint", tint)
     if over is not None:
@@ -186,17 +153,3 @@ def _lobes(radius: float, rng: np.random.Generator) -> list[tuple[float, float, 
             reach = radius * rng.uniform(0.25, 0.6)
             lobes.append((reach * np.cos(turn), reach * np.sin(turn), part))
     return lobes
-
-
-def _merge(within: Values, rim: Values, rho: Values, radius: float, width: float) -> None:
-    """Add a round drop: F of both by a maximum that is smooth over `width` radii; radii of rims blend likewise.
-
-    The maximum has a continuous second derivative [quilez2013], or a mirrored lamp would show where drops have met.
-    """
-    # Outside the distance itself: it falls by a metre a metre everywhere, so that merged rims keep their slope.
-    new = np.where(rho < radius, (radius * radius - rho * rho) / (2.0 * radius), radius - rho)
-    over = width * np.minimum(rim, radius)
-    near = np.clip(1.0 - np.abs(new - within) / over, 0.0, 1.0)
-    share = ramp((new - within) / over, -1.0, 1.0)
-    within[:] = np.maximum(within, new) + over * near**3 / 6.0
-    rim[:] = rim + share * (radius - rim)

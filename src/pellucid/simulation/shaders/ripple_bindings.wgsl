@@ -7,34 +7,38 @@
 @group(0) @binding(2) var<storage, read_write> velocity: array<f32>;
 @group(0) @binding(3) var<storage, read> friction: array<f32>;
 
-// Place of a cell up to two outside of the border: repeated, or mirrored so that nothing flows through the border.
-fn ripple_cell(at: vec2i) -> u32 {
-    let size = vec2i(ripples.size);
-    let repeated = (at + size) % size;
-    let mirrored = select(select(at, 2 * size - 1 - at, at >= size), -1 - at, at < vec2i(0));
-    let cell = select(mirrored, repeated, ripples.periodic != 0u);
-    return u32(cell.y * size.x + cell.x);
-}
-
-fn ripple_u(at: vec2i) -> f32 {
-    return displacement[ripple_cell(at)];
-}
-
-// Four neighbours that lie alike
-fn ripple_ring(at: vec2i, a: vec2i, b: vec2i) -> f32 {
-    return ripple_u(at + a) + ripple_u(at - a) + ripple_u(at + b) + ripple_u(at - b);
+// Number of a row or column up to two outside of the border: repeated, or mirrored, so that nothing flows out.
+fn ripple_line(at: i32, count: u32) -> u32 {
+    let n = i32(count);
+    let around = ripples.periodic != 0u;
+    let low = select(at, select(-1 - at, at + n, around), at < 0);
+    return u32(select(low, select(2 * n - 1 - at, at - n, around), at >= n));
 }
 
 // c^2 L' u with L' = L - (h^2 - c^2 dt^2)/12 L L, L the nine-point Laplacian [shubin1987]: fields/waves.py, stencil
 fn ripple_acceleration(at: vec2i) -> f32 {
-    let centre = ripple_u(at);
-    var sum = ripples.near.x * centre;
-    sum += ripples.near.y * ripple_ring(at, vec2i(1, 0), vec2i(0, 1));
-    sum += ripples.near.z * ripple_ring(at, vec2i(1, 1), vec2i(1, -1));
-    sum += ripples.near.w * ripple_ring(at, vec2i(2, 0), vec2i(0, 2));
-    sum += ripples.far.x * (ripple_ring(at, vec2i(2, 1), vec2i(1, 2)) + ripple_ring(at, vec2i(2, -1), vec2i(1, -2)));
-    sum += ripples.far.y * ripple_ring(at, vec2i(2, 2), vec2i(2, -2));
-    return sum;
+    let a = ripple_line(at.x - 2, ripples.size.x);
+    let b = ripple_line(at.x - 1, ripples.size.x);
+    let c = u32(at.x);
+    let d = ripple_line(at.x + 1, ripples.size.x);
+    let e = ripple_line(at.x + 2, ripples.size.x);
+    let far = ripple_row(ripple_line(at.y - 2, ripples.size.y), a, b, c, d, e)
+            + ripple_row(ripple_line(at.y + 2, ripples.size.y), a, b, c, d, e);
+    let near = ripple_row(ripple_line(at.y - 1, ripples.size.y), a, b, c, d, e)
+             + ripple_row(ripple_line(at.y + 1, ripples.size.y), a, b, c, d, e);
+    let here = ripple_row(u32(at.y), a, b, c, d, e);
+    return dot(here, ripples.near.xyw) + dot(near, vec3f(ripples.near.yz, ripples.far.x))
+         + dot(far, vec3f(ripples.near.w, ripples.far.xy));
+}
+
+// Sums of a row's displacements at the columns 0, 1 and 2 away
+fn ripple_row(row: u32, a: u32, b: u32, c: u32, d: u32, e: u32) -> vec3f {
+    let first = row * ripples.size.x;
+    return vec3f(
+        displacement[first + c],
+        displacement[first + b] + displacement[first + d],
+        displacement[first + a] + displacement[first + e],
+    );
 }
 
 // Velocity half a step after the state; damping by the mean of both velocities

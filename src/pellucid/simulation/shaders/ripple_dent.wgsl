@@ -5,7 +5,7 @@
 @group(0) @binding(0) var<uniform> dent: RippleDent;
 @group(0) @binding(1) var<storage, read_write> displacement: array<f32>;
 
-@compute @workgroup_size(8, 8)
+@compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if (any(id.xy >= dent.size)) { return; }
     let pool = vec2f(dent.size) * dent.cell_m;

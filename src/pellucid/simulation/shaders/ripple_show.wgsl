@@ -4,7 +4,7 @@
 
 @group(0) @binding(5) var heights: texture_storage_2d<r32float, write>;
 
-@compute @workgroup_size(8, 8)
+@compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if (any(id.xy >= ripples.size)) { return; }
     let cell = id.y * ripples.size.x + id.x;

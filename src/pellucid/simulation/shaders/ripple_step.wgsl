@@ -4,7 +4,7 @@
 
 @group(0) @binding(4) var<storage, read_write> following: array<f32>;
 
-@compute @workgroup_size(8, 8)
+@compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if (any(id.xy >= ripples.size)) { return; }
     let cell = id.y * ripples.size.x + id.x;
