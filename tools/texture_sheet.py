@@ -1,6 +1,7 @@
 """A contact sheet of the procedural textures: heights, normals, colours, and lit from the upper left.
 
-Run ``python tools/texture_sheet.py sheet.png [--size 256] [--seed 0] [--only bricks,drops]``. Opaque ones are shown
+Run ``python tools/texture_sheet.py sheet.png [--size 256] [--seed 0] [--only bricks,drops]``, or with ``--page``
+for the picture of docs/textures.md. Opaque ones are shown
 lit as two by two tiles, so that seams and repetition would be seen; water and glass lie on paper with a dark grid.
 """
 
@@ -8,14 +9,17 @@ from __future__ import annotations
 
 import argparse
 import time
+from pathlib import Path
 
 import numpy as np
+import OpenImageIO
 
-from pellucid.fields import textures
+from pellucid.fields import Drops, Ripples, textures
 from pellucid.fields.textures import Maps
 from pellucid.io.contact_sheet import contact_sheet
 from pellucid.io.images import write_image
 
+PAGE = Path(__file__).resolve().parents[1] / "docs" / "images" / "textures.jpg"
 NAMES = ("bricks", "cobbles", "tiles", "hammered_glass", "drops", "puddles", "brushed_metal", "skin")
 CLEAR = {"hammered_glass", "drops", "puddles"}
 #: GGX roughness and reflectance at normal incidence for the lit picture.
@@ -114,7 +118,7 @@ def through(heights: np.ndarray, normals: np.ndarray, maps: Maps, wet: np.ndarra
     j, i = np.mgrid[:size, :size].astype(float)
     x, y = (i - bend[..., 0]) / size, (j + bend[..., 1]) / size
     line = np.minimum(np.abs(x * 16 % 1.0 - 0.5), np.abs(y * 16 % 1.0 - 0.5)) * size / 16
-    paper = np.where(line[..., None] < 1.0, [0.05, 0.10, 0.22], [0.42, 0.33, 0.24])
+    paper = np.where(line[..., None] < 1.0, [0.04, 0.08, 0.18], [0.62, 0.55, 0.45])
     fresnel = 0.02 + 0.98 * (1.0 - normals[..., 2]) ** 5
     light = gathered(bend, wet)
     body = paper * maps.colors * light[..., None]
@@ -138,14 +142,60 @@ def rows(name: str, maps: Maps) -> list[tuple[str, np.ndarray]]:
     ]
 
 
+def moving() -> list[tuple[str, np.ndarray]]:
+    """Two titled pictures of heights in motion: drops on a pane, ripples in a basin."""
+    rain = Drops((384, 384), 0.0002, seed=4, rain_m_per_s=2e-5)
+    for x, z, volume in ((0.0, -0.03, 25.0), (-0.02, -0.035, 14.0), (0.022, -0.025, 40.0)):
+        rain.drop(x, z, volume, time_s=0.45)
+    basin = Ripples((256, 256), 0.001, speed_m_s=0.25)
+    for x, z, time_s in ((-0.05, -0.03, 0.0), (0.06, 0.07, 0.15), (0.09, -0.1, 0.3)):
+        basin.drop(x, z, 0.005, 0.004, time_s)
+    heights = rain.advance(0.68).astype(float)
+    pane = Maps.of(heights, (1, 1, 1), rain.tile_m[0]).normals.astype(float)
+    glass = np.linspace(0.5, 0.1, 384)[:, None] * np.ones((1, 384))
+    fresnel = 0.02 + 0.98 * (1.0 - pane[..., 2]) ** 5
+    # A drop shows what is behind the pane upside down.
+    seen = np.clip(0.3 - 0.22 * pane[..., 1] / pane[..., 2], 0.02, 0.9)
+    drops = np.where(heights > 0.0, (1.0 - fresnel) * seen + fresnel * sky(pane), 0.6 * glass)
+    water = Maps.of(basin.advance(0.7), (1, 1, 1), basin.tile_m[0]).normals.astype(float)
+    waves = np.clip(0.12 + 1.6 * (water @ SUN - SUN[2]), 0.0, 1.0)
+    tints = (np.array([0.9, 1.0, 1.1]), np.array([0.6, 1.0, 1.15]))
+    shaded = [encoded(grey[..., None] * tint) for grey, tint in zip((drops, waves), tints, strict=True)]
+    return [("Drops after 0.68 s", shaded[0]), ("Ripples after 0.7 s", shaded[1])]
+
+
+def flooded() -> np.ndarray:
+    """(H, W, 3) linear radiance of cobbles with puddles: wet stone is darker, and water mirrors the sky."""
+    ground = textures.cobbles(512, 3)
+    water = textures.puddles(over=ground, coverage=0.45)
+    depth = np.clip(water.heights_m - ground.heights_m, 0.0, None).astype(float)
+    shade = lit("cobbles", ground)
+    under = shade * 0.6 * np.exp(-depth[..., None] * np.array([45.0, 32.0, 38.0])) + 0.05 * np.array([0.8, 0.95, 1.1])
+    return np.where(depth[..., None] > 0.0, under, shade)
+
+
+def write_page(pictures: list[tuple[str, np.ndarray]]) -> None:
+    """The picture of docs/textures.md."""
+    sheet = OpenImageIO.ImageBuf(contact_sheet(pictures, columns=5))
+    height = round(1200 * sheet.spec().height / sheet.spec().width)
+    small = OpenImageIO.ImageBufAlgo.resize(sheet, filtername="lanczos3", roi=OpenImageIO.ROI(0, 1200, 0, height))
+    small.specmod().attribute("Compression", "jpeg:86")
+    small.write(str(PAGE))
+
+
 def main() -> None:
     """Write the sheet."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("target")
+    parser.add_argument("target", nargs="?")
     parser.add_argument("--size", type=int, default=256)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--only", default=",".join(NAMES))
+    parser.add_argument("--page", action="store_true", help="write the picture of docs/textures.md")
     options = parser.parse_args()
+    if options.page:
+        pictures = [(name, encoded(lit(name, getattr(textures, name)(512)))) for name in NAMES if name != "puddles"]
+        write_page([*pictures, ("puddles over cobbles", encoded(flooded())), *moving()])
+        return
     pictures = []
     for name in options.only.split(","):
         start = time.process_time()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -171,6 +172,16 @@ def test_puddles_stand_level_and_cover_the_asked_share() -> None:
 def test_scratches_run_along_u() -> None:
     n = made("brushed_metal").normals
     assert np.abs(n[..., 1]).mean() > 8 * np.abs(n[..., 0]).mean()
+
+
+def test_the_example_of_the_page_runs() -> None:
+    page = (Path(__file__).resolve().parents[2] / "docs" / "textures.md").read_text(encoding="utf-8")
+    code = page.split("```python\n")[1].split("```")[0]
+    assert code.count("256") == 7
+    values: dict[str, Any] = {}
+    exec(compile(code.replace("256", "64"), "textures.md", "exec"), values)
+    assert [h.shape for h in values["heights"]] == [(64, 64)] * 2
+    assert (values["water"].heights_m > values["ground"].heights_m).mean() == pytest.approx(0.4, abs=0.02)
 
 
 # ---- bad input --------------------------------------------------------------------------------------------------

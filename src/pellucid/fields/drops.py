@@ -12,6 +12,7 @@ from pellucid.errors import SceneError
 from pellucid.fields.sessile import (
     DENSITY,
     GRAVITY,
+    PLUNGE,
     SURFACE_TENSION,
     check_angle,
     highest_m,
@@ -33,6 +34,8 @@ RELAXATION_S = 0.04
 STRAYING_S = 0.25
 #: Standard deviation of the way of a running drop from straight down, radians.
 STRAYING = 0.35
+#: Texels outside of a rim over which the surface goes on at the contact angle.
+APRON = 2.5
 #: Volumes of the droplets of a trail, cubic metres.
 TRAIL_M3 = (0.03e-9, 0.4e-9)
 
@@ -381,7 +384,7 @@ class Drops:
                 self._draw(within, rim, x[k] - back * np.sin(s.way[k]), y[k] - back * np.cos(s.way[k]), tail, 1.8)
         for k, radius in enumerate(ghosts.shown * np.exp(-dt / RELAXATION_S)):
             self._draw(within, rim, ghosts.x[k], ghosts.y[k], radius, 1.2)
-        heights = meniscus(within, rim, self.contact_angle)
+        heights = meniscus(within, rim, self.contact_angle, APRON * self.cell_m)
         return np.clip(heights, *self.limits_m).astype(np.float32)
 
     def _draw(self, within: Values, rim: Values, x: float, y: float, radius: float, width: float) -> None:
@@ -389,7 +392,7 @@ class Drops:
         if radius < 0.25 * self.cell_m:
             return
         rows, columns = self.shape
-        reach = radius * (1.0 + width) + self.below_m / np.tan(self.contact_angle) + self.cell_m
+        reach = radius * (1.0 + 0.25 * width) + APRON * self.cell_m + self.below_m / PLUNGE + self.cell_m
         top, bottom = (int(np.floor((y + sign * reach) / self.cell_m)) for sign in (-1, 1))
         left, right = (int(np.floor((x + sign * reach) / self.cell_m)) for sign in (-1, 1))
         j = np.arange(max(top, 0), min(bottom + 1, rows))

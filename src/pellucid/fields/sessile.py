@@ -13,6 +13,8 @@ Values = npt.NDArray[np.float64]
 DENSITY = 998.2
 SURFACE_TENSION = 0.0728
 GRAVITY = 9.81
+#: Slope of the surface beyond the apron of a drop.
+PLUNGE = 12.0
 #: sqrt(surface tension / (density g)), metres [degennes2004, 2.2].
 CAPILLARY_LENGTH_M = float(np.sqrt(SURFACE_TENSION / (DENSITY * GRAVITY)))
 
@@ -31,8 +33,8 @@ def highest_m(contact_angle: float) -> float:
     return float(2.0 * CAPILLARY_LENGTH_M * np.sin(0.5 * contact_angle))
 
 
-def meniscus(within: Values, rim_m: Values | float, contact_angle: float) -> Values:
-    """Height of a drop over the plane that it lies on, metres; below its rim the tangent goes on downwards.
+def meniscus(within: Values, rim_m: Values | float, contact_angle: float, apron_m: float = np.inf) -> Values:
+    """Height of a drop over the plane that it lies on, metres; outside of its rim the tangent goes on downwards.
 
     With R = r / sin(theta) a spherical cap is h = sqrt(R^2 - rho^2) - R cos(theta). Written with
     F = (r^2 - rho^2) / (2 r), which falls by one metre a metre at the rim, it is
@@ -45,11 +47,14 @@ def meniscus(within: Values, rim_m: Values | float, contact_angle: float) -> Val
     Parameters
     ----------
     within : F, metres, negative outside. rim_m : r, metres. contact_angle : theta, radians, below a right angle.
+    apron_m : so far outside of the rim the tangent goes on; then the surface plunges, `PLUNGE` metres a metre. A texel
+        or two let interpolation between texels find the rim and its slope; more would fill joints of the ground nearby.
     """
     flat = np.asarray(rim_m) / np.tan(contact_angle)
     cap = np.sqrt(flat * flat + 2.0 * rim_m * np.maximum(within, 0.0)) - flat
     cap = cap / np.cbrt(1.0 + (cap / highest_m(contact_angle)) ** 3)
-    return np.where(within > 0.0, cap, within * np.tan(contact_angle))
+    outside = within * np.tan(contact_angle) + PLUNGE * np.minimum(within + apron_m, 0.0)
+    return np.where(within > 0.0, cap, outside)
 
 
 def rims_of(volumes_m3: npt.ArrayLike, contact_angle: float) -> Values:

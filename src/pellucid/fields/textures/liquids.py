@@ -8,10 +8,13 @@ from typing import Any
 import numpy as np
 
 from pellucid.errors import SceneError
-from pellucid.fields.sessile import check_angle, meniscus, merge, rims_of
+from pellucid.fields.sessile import PLUNGE, check_angle, meniscus, merge, rims_of
 
 from .maps import Maps, color, grid, number, places
 from .noise import octaves
+
+#: Texels outside of a rim over which the surface goes on at the contact angle.
+APRON = 2.5
 
 
 def drops(
@@ -26,8 +29,8 @@ def drops(
 ) -> Maps:
     """Drops of water on a plane at height 0, some of which have run together.
 
-    Between the drops the surface dips under the plane at the contact angle, down to `-below_m`: as the translucent
-    layer of a relief it holds matter in the drops only, also over a solid layer that has joints.
+    Between the drops the surface dips under the plane, at first at the contact angle, then steeply, to `-below_m`: as
+    the translucent layer of a relief it holds matter in the drops only, also over a solid layer that has joints.
 
     Parameters
     ----------
@@ -78,7 +81,7 @@ def drops(
             dv = v - y - dy / tile_m
             merge(within, rim, np.hypot(du - np.round(du), dv - np.round(dv)) * tile_m, part, 1.8 if n else 0.6)
         progress = np.count_nonzero(within > 0.0) / (coverage * size * size)
-    heights = np.maximum(meniscus(within, rim, angle), -below_m)
+    heights = np.maximum(meniscus(within, rim, angle, APRON * tile_m / size), -below_m)
     return Maps.of(heights, tinted, tile_m)
 
 
@@ -132,7 +135,8 @@ def puddles(
     slope = np.hypot(*(np.roll(hollow, -1, axis=a) - np.roll(hollow, 1, axis=a) for a in (0, 1))) / (2.0 * texel)
     shore = hollow / np.sqrt(slope**2 + float(np.mean(slope)) ** 2 * 0.05)
     steep = np.tan(angle)
-    heights = np.where(shore > 0.0, depth_m * (1.0 - np.exp(-np.maximum(shore, 0.0) * steep / depth_m)), shore * steep)
+    outside = shore * steep + PLUNGE * np.minimum(shore + APRON * texel, 0.0)
+    heights = np.where(shore > 0.0, depth_m * (1.0 - np.exp(-np.maximum(shore, 0.0) * steep / depth_m)), outside)
     return Maps.of(np.maximum(heights, -below_m), tinted, tile_m)
 
 
