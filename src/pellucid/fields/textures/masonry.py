@@ -240,8 +240,8 @@ def tiles(
         bed = -relief_m + 0.00013 * sand + 0.25 * relief_m * ramp(inside, -0.5 * grout_m, 0.0)
         heights = bed + (plane - bed) * face
         # Molten glaze flows off the rims: it is thin and pale there, and deep where it gathers.
-        depth = 1.0 + handmade * (0.32 * light + 0.42 * stain * (1.0 + 0.5 * mottle)) + 0.1 * handmade * swell
-        shade = np.stack([1.0 + 0.2 * tint, 1.0 + 0.03 * tint, 1.0 - 0.05 * tint], axis=-1)
+        depth = 1.0 + handmade * (0.24 * light + 0.42 * stain * (1.0 + 0.5 * mottle)) + 0.1 * handmade * swell
+        shade = np.stack([1.0 + 0.1 * tint, 1.0 + 0.02 * tint, 1.0 - 0.04 * tint], axis=-1)
         body = glaze * np.maximum(depth, 0.2)[..., None] * (1.0 + handmade * (shade - 1.0))
         pale = 0.55 * glaze + 0.45 * np.array([0.62, 0.55, 0.45])
         thin = 1.0 - ramp(inside + 0.0012 * swell + 0.0006 * stain, 0.0, rim)
