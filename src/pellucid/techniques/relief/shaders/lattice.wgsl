@@ -41,6 +41,13 @@ fn relief_leaves(walk: ReliefWalk, t: f32, far: vec2f) -> f32 {
     return max(min(borders.x, borders.y), t) * 1.0000003 + walk.past;
 }
 
+// The reach of a ray; none of a ray that is not a number, as of lanes of a driver that lie outside of a triangle: they
+// would never come to an end, and the others wait for them.
+fn relief_end(walk: ReliefWalk, ray: ReliefRay, reach: f32) -> f32 {
+    let size = walk.spread + abs(walk.origin.x) + abs(walk.origin.y) + abs(ray.h) + abs(ray.dh) + abs(ray.bend);
+    return select(0.0, reach, size < 1e20);
+}
+
 fn relief_slope_along(ray: ReliefRay, t: f32) -> f32 {
     return ray.dh + 2.0 * ray.bend * t;
 }

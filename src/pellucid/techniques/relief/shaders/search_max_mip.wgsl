@@ -21,11 +21,12 @@ fn relief_node(walk: ReliefWalk, cell: vec2f, level: u32) -> ReliefNode {
 
 fn relief_by_bounds(ray: ReliefRay, reach: f32, kind: u32) -> ReliefHit {
     let walk = relief_walk(ray);
+    let end = relief_end(walk, ray, reach);
     let top = firstLeadingBit(max(relief.texels.x, relief.texels.y));
     // Squares as large as a quarter of the way: larger ones are hardly ever free.
-    var level = min(u32(max(log2(walk.spread * reach) - 2.0, 0.0)), top);
+    var level = min(u32(max(log2(walk.spread * end) - 2.0, 0.0)), top);
     var t = 0.0;
-    for (var turn = 0u; turn < RELIEF_TURNS && t < reach; turn++) {
+    for (var turn = 0u; turn < RELIEF_TURNS && t < end; turn++) {
         let cell = relief_cell(walk, t);
         let node = relief_node(walk, cell, level);
         let leaves = relief_leaves(walk, t, node.far);
@@ -40,14 +41,14 @@ fn relief_by_bounds(ray: ReliefRay, reach: f32, kind: u32) -> ReliefHit {
             free = free && relief_highest(ray, t, leaves) < node.bounds.w;
         }
         if !free && level == 0u {
-            let hit = relief_in_cell(walk, ray, cell, t, min(leaves, reach), kind);
+            let hit = relief_in_cell(walk, ray, cell, t, min(leaves, end), kind);
             if hit.layer != RELIEF_NONE {
                 return hit;
             }
         }
         // Not free, and not a cell: look closer, from where the ray can first be as low as the square is high.
         let closer = !free && level > 0u;
-        let fall = max(-relief_steepest_fall(ray, t, reach), 1e-20);
+        let fall = max(-relief_steepest_fall(ray, t, end), 1e-20);
         let enters = min(t + max(relief_height_along(ray, t) - ceiling, 0.0) / fall, leaves);
         t = select(leaves, select(enters, t, kind == RELIEF_LEAVE), closer);
         // A ray that leaves a larger square together with this one may do with larger ones.
