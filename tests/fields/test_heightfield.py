@@ -95,9 +95,10 @@ def test_cones_are_the_narrowest_that_hold_for_all_corners(tiling: bool) -> None
 
 
 @both_edges
-def test_no_bilinear_surface_reaches_above_a_cone(tiling: bool) -> None:
+@pytest.mark.parametrize("gaps", [3, 96])
+def test_no_bilinear_surface_reaches_above_a_cone(tiling: bool, gaps: int) -> None:
     h = heights()
-    cones = cone_map(h, tiling).astype(np.float64)
+    cones = cone_map(h, tiling, gaps).astype(np.float64)
     rng = np.random.default_rng(5)
     n = 200_000
     cell = np.stack([rng.integers(0, SIZE[1], n), rng.integers(0, SIZE[0], n)])

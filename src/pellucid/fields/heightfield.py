@@ -89,7 +89,7 @@ def cell_minima(heights: Array, tiling: bool) -> Array:
     return -cell_maxima(-heights, tiling)
 
 
-def cone_map(heights_m: npt.ArrayLike, tiling: bool = True) -> npt.NDArray[np.float32]:
+def cone_map(heights_m: npt.ArrayLike, tiling: bool = True, gaps: int = 96) -> npt.NDArray[np.float32]:
     """How steeply the surface may rise around each cell, for each quadrant of directions of rays.
 
     Cones of [dummer2006], but with their apex over a whole cell, measured in steps from cell to cell, and narrower
@@ -106,11 +106,12 @@ def cone_map(heights_m: npt.ArrayLike, tiling: bool = True) -> npt.NDArray[np.fl
     ray is above M + r (|a| + |b|) it is above the surface, whatever its azimuth in the quadrant.
 
     The greatest corner at gap D is the greatest of two at gap D - 1, seen from the next cell along either axis; so
-    the map is exact, at the cost of one maximum a cell for each D.
+    the cones are exact, at the cost of one maximum a cell for each D. After `gaps` of them the highest corner of all
+    counts as if it came next, which makes cones a little wider than they must be.
 
     Parameters
     ----------
-    heights_m : (H, W) metres.
+    heights_m : (H, W) metres. gaps : cells, 1 or more.
 
     Returns
     -------
@@ -119,25 +120,32 @@ def cone_map(heights_m: npt.ArrayLike, tiling: bool = True) -> npt.NDArray[np.fl
 
     Raises
     ------
-    SceneError : heights that are no finite (H, W) array.
+    SceneError : heights that are no finite (H, W) array, or no gaps.
     """
     highest = cell_maxima(_checked(heights_m, "heights_m").astype(np.float32), tiling)
-    ratios = [_steepest(highest, column_falls, row_falls, tiling) for row_falls in (0, 1) for column_falls in (0, 1)]
+    if gaps < 1:
+        raise SceneError("gaps", f"is {gaps}", "use 1 or more")
+    falls = [(column, row) for row in (False, True) for column in (False, True)]
+    ratios = [_steepest(highest, column, row, tiling, gaps) for column, row in falls]
     return np.stack([np.stack([highest, ratio], axis=-1) for ratio in ratios])
 
 
-def _steepest(highest: Array, column_falls: int, row_falls: int, tiling: bool) -> npt.NDArray[np.float32]:
+def _steepest(highest: Array, column_falls: bool, row_falls: bool, tiling: bool, gaps: int) -> npt.NDArray[np.float32]:
     """Of one quadrant: the greatest rise a cell of gap to any corner."""
     along = _previous if column_falls else _next
     across = _previous if row_falls else _next
+    # All corners of a map that repeats, or ends, have been seen at this gap.
+    last = sum(highest.shape)
     ahead, top = highest, highest.max()
     ratio: Array = np.zeros_like(highest)
-    for gap in range(1, sum(highest.shape) + 1):
+    for gap in range(1, min(gaps, last) + 1):
         ahead = np.maximum(along(ahead, 1, tiling), across(ahead, 0, tiling))
         np.maximum(ratio, (ahead - highest) / np.float32(gap), out=ratio)
         # Even the top of the relief, if it came next, would raise no ratio any more.
         if gap % 16 == 0 and ((top - highest) <= ratio * np.float32(gap + 1)).all():
             break
+    if gaps < last:
+        np.maximum(ratio, (top - highest) / np.float32(gaps + 1), out=ratio)
     # Divisions round to the nearest: the least number above is safe.
     return np.where(ratio > 0.0, np.nextafter(ratio, np.float32(np.inf)), ratio).astype(np.float32)
 

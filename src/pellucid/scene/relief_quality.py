@@ -24,8 +24,9 @@ class ReliefQuality(Value):
 
     Parameters
     ----------
-    search : how a ray finds the surface: ``"max_mip"`` goes down a pyramid of highest heights and misses nothing;
-        ``"linear"`` takes equal steps; ``"distance"`` and ``"cone"`` jump as far as a map of free space says.
+    search : how a ray finds the surface: ``"cone"`` jumps as far as a map of free space says, ``"max_mip"`` goes
+        down a pyramid of highest heights; both miss nothing, and the second serves heights that move. ``"linear"``
+        takes equal steps, and ``"distance"`` steps as long as the nearest matter is away.
     linear_steps, binary_steps : of a linear search, 1 to 1024 and 0 to 32.
     linear_approximation : end it on the line between the last two heights.
     refraction_steps : linear and binary steps of rays in the translucent layer.
@@ -50,7 +51,7 @@ class ReliefQuality(Value):
     SceneError : a value out of range.
     """
 
-    search: str = "max_mip"
+    search: str = "cone"
     linear_steps: int = 24
     binary_steps: int = 6
     linear_approximation: bool = True
