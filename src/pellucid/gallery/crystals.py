@@ -68,7 +68,7 @@ def tourmaline() -> Scene:
         ((0.019, lies, 0.0), (90.0, 0.0, 30.0)),
     ]
     stones = [
-        RefractiveVolume(prism, position=at, rotation=turn, quality=quality, light=LightQuality(caustics=False))
+        RefractiveVolume(prism, position=at, rotation=turn, quality=quality, light=stage.FACET_LIGHT)
         for at, turn in places
     ]
     return Scene(

@@ -100,6 +100,7 @@ LightParams = struct(
         ("patch_flux", "f32"),  # largest of the front, at this wavelength
         ("min_flux", "f32"),
         ("divide_above", "f32"),  # patches with less than this share of `patch_flux` stay wide
+        ("follow_above", "f32"),  # and of those with less than this only some are followed
         ("split_width", "f32"),  # object metres
         ("quanta_per_flux_m", "f32"),
         ("fluence_per_quantum", "f32"),

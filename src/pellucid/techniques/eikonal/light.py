@@ -39,7 +39,8 @@ if TYPE_CHECKING:
     from pellucid.techniques.eikonal.bodies import Body
     from pellucid.techniques.eikonal.passes import EikonalTechnique
 
-GENERATIONS = 64
+GENERATIONS = 64  # at most
+DIVISIONS = 24  # generations beside those that bounces take: patches are divided on their way
 CAPACITY = 1 << 17  # patches in a list
 OUT_CAPACITY = 3 << 16  # bundles that leave in one batch
 BATCH = 1 << 14  # patches of the front that are followed at a time
@@ -288,15 +289,16 @@ class LightSimulator:
         if prepared.graded:
             constants |= {"SMOOTH": float(not prepared.sharp), "ADAPTIVE": matter["ADAPTIVE"]}
         march = self._kernel("light_curved" if prepared.graded else "light_straight", constants)
-        for g in range(GENERATIONS - 1):
+        generations = generations_for(quality)
+        for g in range(generations - 1):
             encoder.copy_buffer_to_buffer(counters, 16 * (g + 1), arguments, 0, 16)
             step = {**bindings, "patches": ping, "next_patches": pong, "generation": self._generations[g]}
             march.run((0, 0, 0), step, encoder, indirect=(arguments, 0))
             ping, pong = pong, ping
-        encoder.copy_buffer_to_buffer(counters, 16 * GENERATIONS, arguments, 0, 16)
-        last = {**bindings, "patches": ping, "next_patches": pong, "generation": self._generations[GENERATIONS - 1]}
+        encoder.copy_buffer_to_buffer(counters, 16 * generations, arguments, 0, 16)
+        last = {**bindings, "patches": ping, "next_patches": pong, "generation": self._generations[generations - 1]}
         self._kernel("light_end", {}).run((0, 0, 0), last, encoder, indirect=(arguments, 0))
-        self._kernel("light_end", {}, "count").run((-(-GENERATIONS // 64), 1, 1), last, encoder)
+        self._kernel("light_end", {}, "count").run((1, 1, 1), last, encoder)
 
     def _hand_on(
         self,
@@ -437,6 +439,11 @@ def _inner(field: np.ndarray, shape: tuple[int, int, int]) -> np.ndarray:
     return np.ascontiguousarray(field[cut])
 
 
+def generations_for(quality: LightQuality) -> int:
+    """How many generations light is followed through. Each is a dispatch, also when nothing is left to follow."""
+    return min(GENERATIONS, DIVISIONS + 2 * quality.bounces)
+
+
 def has_ambient_matter(prepared: Prepared) -> bool:
     """Whether matter without a surface dims light."""
     return prepared.absorption is not None or prepared.scattering is not None
@@ -536,7 +543,9 @@ def _record(lit: Lit, sources: Sequence[Source], largest: float, total: float) -
     out["most_layers"] = 2 * max(grid) + 16
     out["patch_flux"] = patch_flux
     out["min_flux"] = quality.min_flux
-    out["divide_above"] = DIVIDE_ABOVE
+    # Measured by a patch as wide as patches may become: of a coarse front all the more pieces are worth it.
+    out["divide_above"] = DIVIDE_ABOVE * min(1.0, quality.split_voxels / quality.front_voxels) ** 2
+    out["follow_above"] = DIVIDE_ABOVE
     # Of a voxel the intensity law keeps one patch: patches must not be wider, or voxels stay dark between them.
     widest = min(quality.split_voxels, 1.0) if quality.method == "intensity" else quality.split_voxels
     out["split_width"] = widest * prepared.voxel

@@ -6,6 +6,7 @@
 
 const SMALLEST_TORN = 0.3;         // voxels: narrower patches whose corners part ways become single rays
 const TURNED_NORMALS = 0.9;        // cosine: normals that differ by more tear a patch
+const ALIKE = 1e-3;             // radians
 const OUT_CAUSTIC = 0u;
 const OUT_BLOCKED = 1u;
 const OUT_UNTOUCHED = 2u;
@@ -74,6 +75,23 @@ fn between_corners(v: array<vec3f, 4>, at: vec2f) -> vec3f {
 // Which way round the corners stand, seen along the light; it changes at a caustic.
 fn orientation(x: array<vec3f, 4>, d: vec3f) -> f32 {
     return sign(dot(cross(x[3] - x[0], x[2] - x[1]), d));
+}
+
+// Whether the width of a patch matters. A tube of parallel rays is the same however wide; only the fluence of voxels asks for more.
+fn too_wide(width: f32, fans_out: bool) -> bool {
+    return width > light.split_width && (DEPOSITS || fans_out);
+}
+
+fn differ(ways: array<vec3f, 4>) -> bool {
+    return length(ways[3] - ways[0]) > ALIKE || length(ways[2] - ways[1]) > ALIKE;
+}
+
+fn ways_differ(p: array<vec3f, 4>) -> bool {
+    return differ(array<vec3f, 4>(normalize(p[0]), normalize(p[1]), normalize(p[2]), normalize(p[3])));
+}
+
+fn normals_differ() -> bool {
+    return differ(array<vec3f, 4>(end_crossing[0].normal, end_crossing[1].normal, end_crossing[2].normal, end_crossing[3].normal));
 }
 
 // Light of one patch relative to what it had when it was undisturbed, however often it was divided since.
@@ -169,7 +187,7 @@ fn go_on(x: array<vec3f, 4>, p: array<vec3f, 4>, flux: vec3f, from_patch: LightP
     let strength = relative(flux, from_patch);
     if (strength <= 0.0) { return; }
     var place = NO_ROOM;
-    let chance = clamp(strength / light.divide_above, 0.0, 1.0);
+    let chance = clamp(strength / light.follow_above, 0.0, 1.0);
     let drawn = random_pair(bitcast<vec2u>(x[0].xy) ^ vec2u(bitcast<u32>(x[0].z), generation.index)).x;
     let strong = strength > light.min_flux && drawn <= chance && from_patch.bounces <= light.bounces;
     if (strong) { place = reserve(generation.index + 2u, 1u, light.capacity); }

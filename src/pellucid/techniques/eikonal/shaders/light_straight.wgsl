@@ -40,11 +40,13 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     // Where on the way the tube gets too wide: widths of straight rays grow no faster than linearly between two of them.
     let limit = light.split_width;
-    let widens = to_width > limit && worth_dividing(flux, tube);
+    let fans_out = ways_differ(corner_p);
+    let widens = too_wide(to_width, fans_out) && worth_dividing(flux, tube);
     var part = vec4f(select(1.0, clamp((limit - from_width) / max(to_width - from_width, 1e-12), 0.0, 1.0), widens));
     // What a surface stretches is divided before it: there a bundle is still straight, and its children meet the true surface.
     let stretched = edges_behind();
-    let stretches = !widens && end_event[0] == INTERFACE && tube.is_ray == 0u && worth_stretching(flux) && max(stretched.x, stretched.y) > limit;
+    let stretches = !widens && end_event[0] == INTERFACE && tube.is_ray == 0u && worth_stretching(flux)
+        && too_wide(max(stretched.x, stretched.y), fans_out || normals_differ());
     if (stretches) { part = before_surface(); }
     var at = array<vec3f, 4>();
     for (var k = 0u; k < 4u; k++) { at[k] = mix(corner_x[k], end_x[k], part[k]); }

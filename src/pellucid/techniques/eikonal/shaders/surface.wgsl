@@ -9,12 +9,18 @@ struct Boundary {
 
 // Distances to all regions, voxels. Without regions the box itself is the surface.
 fn distances_at(x: vec3f) -> vec4f {
-    if (volume.region_count == 0u) {
+    if (is_bare_box()) {
         return vec4f(box_distance(x), 1e9, 1e9, 1e9);
     }
     let found = textureSampleLevel(distance_field, volume_sampler, texture_position(x), 0.0);
     let unused = vec4<bool>(false, volume.region_count < 2u, volume.region_count < 3u, volume.region_count < 4u);
     return select(found, vec4f(1e9), unused);
+}
+
+// No regions: there are no distances. Asked of the texture, since the software driver builds a shader anew, at every dispatch, for the
+// values of uniforms that conditions depend on alone.
+fn is_bare_box() -> bool {
+    return textureDimensions(distance_field).x < 2u;
 }
 
 fn box_distance(x: vec3f) -> f32 {
@@ -47,7 +53,7 @@ fn central_difference(at: vec3i, region: u32) -> vec3f {
 // Third-order interpolation: sum of w_c (s_c + g_c.(x - x_c)/2) over the eight voxels around x. Trilinear interpolation errs by
 // +H h^2/8, Taylor series from the corners by as much below: the mean of the two has neither. (Derived in README.md.)
 fn boundary_at(x: vec3f, region: u32) -> Boundary {
-    if (volume.region_count == 0u) { return box_surface(x); }
+    if (is_bare_box()) { return box_surface(x); }
     let grid = texture_position(x) * vec3f(textureDimensions(distance_field)) - 0.5;
     let low = floor(grid);
     let part = grid - low;
@@ -74,6 +80,6 @@ fn box_surface(x: vec3f) -> Boundary {
 
 // Gradient per object metre, from the one per voxel edge.
 fn per_metre(surface: Boundary) -> vec3f {
-    if (volume.region_count == 0u) { return surface.gradient / volume.voxel; }
+    if (is_bare_box()) { return surface.gradient / volume.voxel; }
     return surface.gradient * vec3f(textureDimensions(distance_field)) / (2.0 * volume.half_extent);
 }
