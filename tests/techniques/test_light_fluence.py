@@ -11,6 +11,8 @@ from scipy.ndimage import gaussian_filter, map_coordinates
 import oracles
 import pellucid as pl
 from pellucid.fields import shapes
+from pellucid.techniques.eikonal.light_params import grid_of
+from pellucid.techniques.eikonal.prepare import prepare
 from pellucid.techniques.eikonal.reference import Cylinder, Limits, Matter, Sphere, World, trace_light
 
 DOWN = pl.DirectionalLight(direction=(0, 0, -1), irradiance=2.0)
@@ -284,3 +286,21 @@ def test_a_ball_near_a_lamp_holds_the_light_that_photons_bring() -> None:
     truth = trace_light(world, [lamp], ball.shape, 6.0, limits=Limits(bounces=9), random=True)
     assert off_by(light.fluence, truth.fluence) < 0.07
     assert light.flux_absorbed == pytest.approx(truth.flux_absorbed, rel=0.01)
+
+
+def test_larger_voxels_of_the_fluence_hold_the_mean_of_the_smaller() -> None:
+    ball = pl.Volume.from_sdf(shapes.sphere(0.03), 1.5, 32, 0.1)
+    fine, coarse = light_in(ball, DOWN), light_in(ball, DOWN, fluence_voxels=2.0)
+    assert coarse.fluence.shape == fine.fluence.shape
+    means = fine.fluence.reshape(16, 2, 16, 2, 16, 2, 3).mean((1, 3, 5))
+    assert off_by(coarse.fluence[::2, ::2, ::2], means, means.max(-1) < 4.0) < 0.05
+    assert coarse.fluence.mean() == pytest.approx(fine.fluence.mean(), rel=0.01)
+    assert coarse.patches < 0.5 * fine.patches
+
+
+def test_fluence_that_no_buffer_holds_gets_larger_voxels() -> None:
+    prepared = prepare(pl.Volume.from_sdf(shapes.sphere(0.03), 1.5, 32, 0.1), "sharp")
+    whole = grid_of(prepared, pl.LightQuality(), 12 * 40**3)
+    fewer = grid_of(prepared, pl.LightQuality(), 12 * 20**3)
+    assert min(whole) >= 32
+    assert 18**3 < np.prod(fewer) <= 20**3

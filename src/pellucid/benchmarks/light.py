@@ -19,7 +19,6 @@ BASE = f"relight_ball_{RESOLUTION}"
 FINE = 0.25  # voxels, of the run that the error is measured against
 SCATTERING = (3.0, 3.0, 3.0)  # 1/m: so that light is wanted all over the body
 PATIENCE_S = 10.0
-GRID_BYTES = 12  # a voxel, in the sum of the fluence
 
 
 @dataclasses.dataclass
@@ -44,7 +43,7 @@ def light(progress: Progress = lambda share: None, repeat: int = 3) -> dict[str,
     from pellucid.renderer import Renderer
 
     renderer = Renderer()
-    jobs = _jobs(renderer.device.limits["max-storage-buffer-binding-size"])
+    jobs = _jobs()
     views = {f"view_clear_{RESOLUTION}": _view(False), f"view_scattering_{RESOLUTION}": _view(True)}
     shares = len(jobs) + 2
     for number, job in enumerate(jobs.values()):
@@ -65,19 +64,19 @@ def light(progress: Progress = lambda share: None, repeat: int = 3) -> dict[str,
     return {"device": device_of(renderer), "suite": "light", "rows": rows}
 
 
-def _jobs(most_bytes: int) -> dict[str, _Job]:
+def _jobs() -> dict[str, _Job]:
     from pellucid.scene import LightQuality
 
-    largest = min(256, int((most_bytes / GRID_BYTES) ** (1 / 3)) // 8 * 8)
-    fits = "" if largest == 256 else f"{largest}^3: the device has no buffer for more"
     bunny_note = "" if bunny_path() else "no bunny.ply here: the creature of pellucid.fields.shapes stands for it"
-    intensity = LightQuality(method="intensity")
+    intensity, coarse = LightQuality(method="intensity"), LightQuality(fluence_voxels=2.0)
     return {
         BASE: _Job(lambda: _ball(RESOLUTION), "a ball that scatters, 0.8 of the box across"),
         f"relight_bunny_{RESOLUTION}": _Job(_bunny, bunny_note),
         "relight_ball_64": _Job(lambda: _ball(64), "error: fluence against front and patches of a quarter voxel"),
         "relight_ball_192": _Job(lambda: _ball(192), ""),
-        "relight_ball_256": _Job(lambda: _ball(largest), fits),
+        "relight_ball_256": _Job(lambda: _ball(256), "fluence on as many voxels as a buffer of the device holds"),
+        f"relight_ball_{RESOLUTION}_coarse": _Job(lambda: _ball(RESOLUTION, coarse), "fluence_voxels=2"),
+        f"relight_bunny_{RESOLUTION}_coarse": _Job(lambda: _bunny(coarse), "fluence_voxels=2"),
         f"dispersion_ball_{RESOLUTION}": _Job(
             lambda: _ball(RESOLUTION, dispersion=True), "three indices, one after the other"
         ),
@@ -112,7 +111,7 @@ def _placed(
     return RefractiveVolume(volume, dispersion=dispersion, light=quality or LightQuality())
 
 
-def _bunny() -> RefractiveVolume:
+def _bunny(quality: LightQuality | None = None) -> RefractiveVolume:
     from pellucid.fields.shapes import creature_mesh
     from pellucid.fields.volume import Volume
     from pellucid.io.meshes import read_mesh
@@ -121,7 +120,7 @@ def _bunny() -> RefractiveVolume:
     mesh = read_mesh(path) if path is not None else None
     vertices, faces = (mesh.vertices, mesh.faces) if mesh is not None else creature_mesh(0.1)
     volume, _ = Volume.from_mesh(vertices, faces, "N-BK7", RESOLUTION)
-    return _placed(volume)
+    return _placed(volume, quality)
 
 
 def _relight(device: Any, job: _Job, repeat: int) -> None:

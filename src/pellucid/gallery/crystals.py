@@ -6,7 +6,7 @@ import numpy as np
 
 from pellucid.fields import shapes
 from pellucid.fields.volume import Volume
-from pellucid.scene import Camera, Environment, LightQuality, Quality, RefractiveVolume, Scene
+from pellucid.scene import Camera, Environment, Quality, RefractiveVolume, Scene
 
 from . import stage
 from .picture import Picture

@@ -16,8 +16,10 @@ class LightQuality(Value):
 
     Parameters
     ----------
-    front_voxels : edge of a patch of the front where it enters the box, in voxels, 0.1 to 8.
-    split_voxels : a patch that has grown wider is divided in two, 0.25 to 8 voxels.
+    fluence_voxels : edge of a voxel of the fluence, in voxels of the volume, 1 to 8. With 2 light takes about a quarter
+        of the time, and its edges are twice as soft.
+    front_voxels : edge of a patch of the front where it enters the box, in voxels of the fluence, 0.1 to 8.
+    split_voxels : a patch that has grown wider is divided in two, 0.25 to 8 voxels of the fluence.
     bounces : crossings of boundaries that light is followed through, 0 to 48.
     min_flux : light that carries less than this share of what its patch began with is given up, 0 to 0.5.
     method : ``"flux"`` adds what every patch carries to the voxels that it crosses, so that energy is kept and
@@ -31,6 +33,7 @@ class LightQuality(Value):
     SceneError : a value out of range.
     """
 
+    fluence_voxels: float = 1.0
     front_voxels: float = 1.0
     split_voxels: float = 1.25
     bounces: int = 32
@@ -42,6 +45,7 @@ class LightQuality(Value):
     def __post_init__(self) -> None:
         store(
             self,
+            fluence_voxels=checks.number("light.fluence_voxels", self.fluence_voxels, low=1.0, high=8.0, unit="voxels"),
             front_voxels=checks.number("light.front_voxels", self.front_voxels, low=0.1, high=8.0, unit="voxels"),
             split_voxels=checks.number("light.split_voxels", self.split_voxels, low=0.25, high=8.0, unit="voxels"),
             bounces=checks.integer("light.bounces", self.bounces, low=0, high=48),

@@ -152,6 +152,7 @@ class QualityFile(Model):
 
 
 class LightQualityFile(Model):
+    fluence_voxels: Number = UNSET
     front_voxels: Number = UNSET
     split_voxels: Number = UNSET
     bounces: StrictInt = UNSET

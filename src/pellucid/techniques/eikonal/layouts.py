@@ -102,6 +102,7 @@ LightParams = struct(
         ("divide_above", "f32"),  # patches with less than this share of `patch_flux` stay wide
         ("follow_above", "f32"),  # and of those with less than this only some are followed
         ("split_width", "f32"),  # object metres
+        ("voxel", "f32"),  # of the fluence, object metres
         ("quanta_per_flux_m", "f32"),
         ("fluence_per_quantum", "f32"),
         ("total_quanta", "f32"),

@@ -23,15 +23,27 @@ from pellucid.surroundings.layouts import OutPatch
 from pellucid.techniques.eikonal.layouts import (
     MOST_OTHERS,
     Generation,
-    LightParams,
     LightPatch,
     LookCount,
     OtherBodies,
 )
+from pellucid.techniques.eikonal.light_params import (
+    BATCH,
+    CAPACITY,
+    FLUENCE_BYTES,
+    OUT_CAPACITY,
+    cells_of,
+    grid_of,
+    others_of,
+    params_of,
+    record_of,
+    voxel_of,
+    worth_of,
+)
 from pellucid.techniques.eikonal.light_sources import Source, sources_of
 from pellucid.techniques.eikonal.prepare import Prepared
 from pellucid.techniques.eikonal.proxies import whole_box
-from pellucid.techniques.eikonal.resources import constants_of, scale_of
+from pellucid.techniques.eikonal.resources import constants_of
 from pellucid.techniques.eikonal.wavelengths import common_draws, draws_of
 
 if TYPE_CHECKING:
@@ -41,11 +53,6 @@ if TYPE_CHECKING:
 
 GENERATIONS = 64  # at most
 DIVISIONS = 24  # generations beside those that bounces take: patches are divided on their way
-CAPACITY = 1 << 17  # patches in a list
-OUT_CAPACITY = 3 << 16  # bundles that leave in one batch
-BATCH = 1 << 14  # patches of the front that are followed at a time
-# Patches that carry less of the front's largest than this are not divided; they leave a track of random points instead.
-DIVIDE_ABOVE = 1.0 / 20.0
 TOTALS = ("flux_in", "flux_absorbed", "flux_out", "flux_ended", "flux_lent", "flux_unsent")
 TOTAL_WORDS = 40
 # Light that has gone through so many bodies in a row goes to the meshes; so many bodies light one another at all.
@@ -159,17 +166,18 @@ class LightSimulator:
         """
         several = len(lit) > 1
         self._reserve(several or any(item.casts for item in lit), several)
-        fronts = [_fronts(item, lights) for item in lit]
+        fronts = [_fronts(item, self._grid(item), lights) for item in lit]
         largest = max((s.patch_flux for sources in fronts for s in sources), default=0.0)
         total = sum(s.total_flux for sources in fronts for s in sources)
+        bodies = [item.body for item in lit]
         self._followed = [
             _Followed(
                 item,
-                grid_of(item.body.prepared),
-                _record(item, sources, largest, total),
+                self._grid(item),
+                record_of(item.body, item.quality, self._grid(item), sources, largest, total),
                 sources,
                 self._sums_of(number, item),
-                self.device.buffer(_others(lit, item).reshape(1), "uniform", "other bodies"),
+                self.device.buffer(others_of(bodies, item.body).reshape(1), "uniform", "other bodies"),
             )
             for number, (item, sources) in enumerate(zip(lit, fronts, strict=True))
         ]
@@ -183,7 +191,7 @@ class LightSimulator:
             for draw in draws
             for number, followed in enumerate(self._followed)
             for source in followed.sources
-            if _worth(source, draw[1]) > 0.0
+            if worth_of(source, draw[1]) > 0.0
             for first in range(0, source.tiles, BATCH)
         ]
         for done, (number, source, draw, first) in enumerate(jobs):
@@ -243,7 +251,7 @@ class LightSimulator:
         surroundings: Surroundings,
     ) -> dict[str, Any]:
         followed, channel = self._followed[number], draw[0][number]
-        params = _params(followed.record, source, draw[1], first)
+        params = params_of(followed.record, source, draw[1], first)
         return {
             **surroundings.bindings,
             **followed.lit.body.textures.channels[channel],
@@ -340,13 +348,16 @@ class LightSimulator:
             self._no_others = self.device.buffer(np.zeros(1, OtherBodies), "uniform", "no other bodies")
         self._lists = self._buffers["patches a"], self._buffers["patches b"]
 
+    def _grid(self, lit: Lit) -> tuple[int, int, int]:
+        return grid_of(lit.body.prepared, lit.quality, self.device.limits["max-storage-buffer-binding-size"])
+
     def _sums_of(self, number: int, lit: Lit) -> dict[str, Any]:
-        grid = grid_of(lit.body.prepared)
+        grid = self._grid(lit)
         if len(self._sums) <= number:
             self._sums.append({})
         sizes = {
             "counters": 16 * (GENERATIONS + 1) + 4 * TOTAL_WORDS,
-            "fluence": 12 * (int(np.prod(grid)) if lit.deposits else 1),
+            "fluence": FLUENCE_BYTES * (int(np.prod(grid)) if lit.deposits else 1),
             "directions": 16 * (int(np.prod(cells_of(grid))) if lit.deposits else 1),
         }
         _grow(self.device, self._sums[number], sizes)
@@ -427,16 +438,18 @@ def illuminate(
     totals, patches = technique.simulator.totals()
     del totals["flux_unsent"]
     shape = body.objects[0].volume.shape
-    fluence, direction = (_inner(field, shape) for field in technique.simulator.read())
+    fluence, direction = (_inner(field, body.prepared, shape) for field in technique.simulator.read())
     seconds = time.perf_counter() - begun
     return Irradiance(fluence, direction, **totals, patches=patches, seconds=seconds)
 
 
-def _inner(field: np.ndarray, shape: tuple[int, int, int]) -> np.ndarray:
-    """Without the voxels that preparing has added on every side."""
-    pads = [(have - want) // 2 for have, want in zip(field.shape[:3], shape, strict=True)]
-    cut = tuple(slice(pad, pad + want) for pad, want in zip(pads, shape, strict=True))
-    return np.ascontiguousarray(field[cut])
+def _inner(field: np.ndarray, prepared: Prepared, shape: tuple[int, int, int]) -> np.ndarray:
+    """At the voxels of a volume, without those that preparing has added on every side; larger ones are repeated."""
+    for axis, voxels in enumerate(shape):
+        have = round(prepared.extent_m[2 - axis] / prepared.voxel_m[2 - axis])
+        at = (np.arange(voxels) + (have - voxels) // 2 + 0.5) * field.shape[axis] / have
+        field = np.take(field, at.astype(int), axis=axis)
+    return np.ascontiguousarray(field)
 
 
 def generations_for(quality: LightQuality) -> int:
@@ -449,11 +462,6 @@ def has_ambient_matter(prepared: Prepared) -> bool:
     return prepared.absorption is not None or prepared.scattering is not None
 
 
-def _worth(source: Source, weights: np.ndarray) -> float:
-    """Of the brightest channel of a lamp, how much is light of one draw."""
-    return float(np.abs(weights @ source.power).max() / source.power.max())
-
-
 def flux_bound(prepared: Prepared, world: np.ndarray, lights: Sequence[object], quality: LightQuality) -> float:
     """Power that the lamps shed on the box of a volume, brightest channel, if nothing is in between."""
     box = whole_box(prepared)
@@ -461,25 +469,12 @@ def flux_bound(prepared: Prepared, world: np.ndarray, lights: Sequence[object], 
     return sum(front.total_flux for front in fronts)
 
 
-def _fronts(lit: Lit, lights: Sequence[object]) -> list[Source]:
+def _fronts(lit: Lit, grid: tuple[int, int, int], lights: Sequence[object]) -> list[Source]:
     """The fronts that carry any light on the box of a body."""
     body = lit.body
-    voxel = body.prepared.voxel
+    voxel = voxel_of(body.prepared, grid)
     sources = (s for lamp in lights for s in sources_of(lamp, body.world, body.box, voxel, lit.quality))
     return [source for source in sources if source.patch_flux > 0.0]
-
-
-def _others(lit: Sequence[Lit], own: Lit) -> np.ndarray:
-    """The OtherBodies record of one body among several."""
-    out = np.zeros((), OtherBodies)
-    others = [item.body for item in lit if item is not own]
-    out["count"] = len(others)
-    for k, body in enumerate(others):
-        out["object_from_world"][k] = np.linalg.inv(body.world).T
-        out["center"][k, :3], out["half"][k, :3] = body.box
-        out["center"][k, 3] = scale_of(body.world)
-        out["number"][k, 0] = body.number
-    return out
 
 
 def _grow(device: Device, buffers: dict[str, Any], sizes: dict[str, int]) -> None:
@@ -510,62 +505,3 @@ def check_lights(prepared: Prepared, world: np.ndarray, lights: Sequence[object]
         if (np.abs(at) < half).all() and prepared.opaque[z, y, x, 3] > 0.5:
             reason = "lies inside opaque matter of a volume, which lets no light out"
             raise SceneError(f"scene.lights[{number}].position", reason, "move the lamp or the volume")
-
-
-def grid_of(prepared: Prepared) -> tuple[int, int, int]:
-    """Voxels (x, y, z) of the fluence: those of the volume."""
-    x, y, z = (round(e / v) for e, v in zip(prepared.extent_m, prepared.voxel_m, strict=True))
-    return x, y, z
-
-
-def cells_of(grid: tuple[int, int, int]) -> tuple[int, int, int]:
-    """Cells (x, y, z) of the direction of light: two voxels wide."""
-    x, y, z = (-(-n // 2) for n in grid)
-    return x, y, z
-
-
-def _record(lit: Lit, sources: Sequence[Source], largest: float, total: float) -> np.ndarray:
-    """The parameters that all lights share. Quanta are as fine as the largest sum allows: all flux through a voxel.
-
-    largest, total : flux of the largest patch, and of all, on all bodies.
-    """
-    out = np.zeros((), LightParams)
-    prepared, quality = lit.body.prepared, lit.quality
-    grid = grid_of(prepared)
-    voxel_m = np.array(prepared.voxel_m) * scale_of(lit.body.world)
-    patch_flux = max((s.patch_flux for s in sources), default=largest or 1.0)
-    total_flux = max(total, patch_flux)
-    longest = float(np.linalg.norm(voxel_m))
-    out["box_center"], out["box_half"] = lit.body.box
-    out["grid"], out["cells"] = grid, cells_of(grid)
-    out["capacity"], out["out_capacity"] = CAPACITY, OUT_CAPACITY
-    out["bounces"] = quality.bounces
-    out["most_layers"] = 2 * max(grid) + 16
-    out["patch_flux"] = patch_flux
-    out["min_flux"] = quality.min_flux
-    # Measured by a patch as wide as patches may become: of a coarse front all the more pieces are worth it.
-    out["divide_above"] = DIVIDE_ABOVE * min(1.0, quality.split_voxels / quality.front_voxels) ** 2
-    out["follow_above"] = DIVIDE_ABOVE
-    # Of a voxel the intensity law keeps one patch: patches must not be wider, or voxels stay dark between them.
-    widest = min(quality.split_voxels, 1.0) if quality.method == "intensity" else quality.split_voxels
-    out["split_width"] = widest * prepared.voxel
-    out["quanta_per_flux_m"] = min(2.0**15 / (patch_flux * longest), 2.0**30 / (total_flux * longest))
-    out["fluence_per_quantum"] = 1.0 / (float(out["quanta_per_flux_m"]) * float(np.prod(voxel_m)))
-    # Of the intensity law: quanta of fluence for a flux through the cross-section of a voxel
-    out["intensity_quanta"] = 1.0 / (float(out["fluence_per_quantum"]) * float(np.prod(voxel_m)) ** (2.0 / 3.0))
-    out["total_quanta"] = min(2.0**24 / patch_flux, 2.0**30 / max(largest, patch_flux))
-    return out
-
-
-def _params(record: np.ndarray, source: Source, weights: np.ndarray, first: int) -> np.ndarray:
-    out = record.copy()
-    out["position"], out["direction"], out["kind"] = source.position, source.direction, source.kind
-    out["inside"], out["casts"] = source.inside, source.casts
-    # Bundles carry what the lamp sends out: matter takes from that, and what is left is worth its weights.
-    out["power"] = source.power
-    out["weights"][:, :3] = weights.T  # columns
-    out["patch_flux"] *= _worth(source, weights)
-    out["face_count"] = len(source.faces)
-    out["faces"][: len(source.faces)] = source.faces
-    out["batch_first"], out["batch_count"] = first, min(BATCH, source.tiles - first)
-    return out

@@ -150,7 +150,7 @@ fn divide(x: array<vec3f, 4>, p: array<vec3f, 4>, edges: vec2f, flux: vec3f, spr
 // A ray stands for a tube as broad as the one that it came from.
 fn breadth_of(x: array<vec3f, 4>, p: array<vec3f, 4>, from_patch: LightPatch) -> f32 {
     let edges = cut_edges(x, normalize(middle(p)));
-    return select(min(max(edges.x, edges.y), volume.voxel), from_patch.breadth, from_patch.is_ray != 0u);
+    return select(min(max(edges.x, edges.y), light.voxel), from_patch.breadth, from_patch.is_ray != 0u);
 }
 
 // One ray for the whole tube: it is narrow, or weak, and its corners do not stay together.

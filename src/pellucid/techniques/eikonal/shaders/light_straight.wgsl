@@ -26,7 +26,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let to_edges = cut_edges(end_x, d);
     let from_width = max(from_edges.x, from_edges.y);
     let to_width = max(to_edges.x, to_edges.y);
-    let narrow = max(from_width, to_width) <= SMALLEST_TORN * volume.voxel;
+    let narrow = max(from_width, to_width) <= SMALLEST_TORN * light.voxel;
     var flux = tube.flux;
     if (torn) {
         var parted = false;
