@@ -73,7 +73,7 @@ class Renderer:
         Parameters
         ----------
         scene : what to draw. size : (width, height) in pixels.
-        time : seconds, for objects that move by themselves; nothing does yet.
+        time : seconds, for objects that move by themselves, such as ripples on a relief.
         samples : jittered pictures that are averaged, for anti-aliasing.
         progress : called with the share that is done, 0 to 1.
 
@@ -88,6 +88,7 @@ class Renderer:
         assert self._targets is not None
         timer = PassTimer(self.device)
         self._prepare(scene, (width, height))
+        self._simulate(time)
         self.device.wait()
         timings = {"prepare": 1e3 * (clock.perf_counter() - begun)}
         self._illuminate(scene, timings)
@@ -146,6 +147,12 @@ class Renderer:
                 self._techniques[kind] = TECHNIQUES[kind](self.device)
             if kind in self._techniques:
                 self._techniques[kind].prepare(items, self.surroundings)
+
+    def _simulate(self, time: float) -> None:
+        """Move what moves by itself to a time."""
+        for technique in self._techniques.values():
+            if hasattr(technique, "simulate"):
+                technique.simulate(time)
 
     def _illuminate(self, scene: Scene, timings: dict[str, float]) -> None:
         """Light from the lamps' side, where a technique wants it; kept until what it depends on moves."""

@@ -169,3 +169,31 @@ def test_several_surfaces_hide_one_another(renderer: pl.Renderer) -> None:
 def _points(depth: np.ndarray, camera: pl.Camera, size: tuple[int, int]) -> np.ndarray:
     origins, directions = camera.pixel_rays(size)
     return np.asarray(origins + np.where(np.isfinite(depth), depth, 0.0)[..., None] * directions)
+
+
+def test_heights_that_move_are_drawn_as_they_are_at_a_time(renderer: pl.Renderer) -> None:
+    class Tide:
+        shape, tile_m, limits_m = (4, 4), (1.0, 1.0), (0.0, 0.2)
+
+        def advance(self, time_s: float) -> np.ndarray:
+            return np.full((4, 4), 0.1 * time_s, np.float32)
+
+    for layer in (pl.ReliefLayer(Tide(), base_m=0.05), pl.ReliefLayer(0.0)):
+        cover = None if layer.is_dynamic else pl.ReliefLayer(Tide(), base_m=0.05)
+        item = pl.ReliefSurface.plane(1.0, layer, cover)
+        for time_s in (1.0, 0.5, 2.0):
+            frame = renderer.render(pl.Scene(from_above(), SKY, objects=[item]), size=(8, 8), time=time_s)
+            np.testing.assert_allclose(frame.depth[4, 4], 1.95 - 0.1 * time_s, atol=1e-5)
+
+
+def test_without_silhouettes_a_sphere_keeps_the_outline_of_its_hull(renderer: pl.Renderer) -> None:
+    low = np.where(np.abs(np.arange(64) - 32) < 2, 0.06, -0.05) * np.ones((8, 1))
+    item = pl.ReliefSurface.sphere(0.5, pl.ReliefLayer(low), tiles=(1, 1))
+    camera = pl.Camera(position=(0, 0, 3), orthographic_height_m=1.3, far_m=9.0)
+    covered = [
+        np.isfinite(renderer.render(pl.Scene(camera, SKY, objects=[o]), size=(48, 48)).depth).sum()
+        for o in (item, item.replace(quality=pl.ReliefQuality(silhouettes=False)))
+    ]
+    pixel = (1.3 / 48) ** 2
+    assert covered[0] * pixel == pytest.approx(np.pi * 0.45**2, rel=0.03)
+    assert covered[1] * pixel == pytest.approx(np.pi * 0.56**2, rel=0.03)

@@ -33,7 +33,8 @@ class ReliefLayer(Value):
     Parameters
     ----------
     heights : (H, W) metres along the normal, row 0 at the top of the map; one number for a flat layer. With
-        `height_m`, an array or the path of a picture (8 or 16 bits, EXR) with values from 0 to 1.
+        `height_m`, an array or the path of a picture (8 or 16 bits, EXR) with values from 0 to 1. Or heights that move:
+        ``fields.waves.Ripples``, ``fields.drops.Drops``, any ``fields.dynamic.DynamicHeights``.
     height_m : height of the value 1 above the value 0, metres > 0; None when `heights` are metres.
     base_m : height of the value 0 when there is `height_m`, metres; else is added.
     normals : (H, W, 3) unit vectors, x to the right, y up, z out of the surface, or a picture in which 0 to 1 stand
@@ -76,7 +77,7 @@ class ReliefLayer(Value):
             files=files,
             height_m=height_m,
             base_m=checks.number("relief_layer.base_m", self.base_m, unit="metres"),
-            heights=_checked_heights(self.heights),
+            heights=_checked_heights(self.heights, height_m),
             normals=_checked_normals(self.normals),
             colors=_checked_colors(self.colors),
             roughness=None
@@ -100,21 +101,40 @@ class ReliefLayer(Value):
 
     @property
     def heights_m(self) -> np.ndarray:
-        """(H, W) float64, metres."""
-        scale = 1.0 if self.height_m is None else self.height_m
-        return self.base_m + scale * np.asarray(self.heights, np.float64)
+        """(H, W) float64, metres; of heights that move, as they begin."""
+        return self.heights_at(0.0)
 
-    def slopes(self, cell_m: tuple[float, float], tiling: bool) -> np.ndarray:
+    @property
+    def is_dynamic(self) -> bool:
+        """Whether the heights change with time."""
+        return not isinstance(self.heights, np.ndarray)
+
+    @property
+    def limits_m(self) -> tuple[float, float]:
+        """Lowest and highest height at any time, metres."""
+        if self.is_dynamic:
+            low, high = self.heights.limits_m
+            return self.base_m + float(low), self.base_m + float(high)
+        heights = self.heights_m
+        return float(heights.min()), float(heights.max())
+
+    def heights_at(self, time_s: float) -> np.ndarray:
+        """(H, W) float64, metres, at a time."""
+        scale = 1.0 if self.height_m is None else self.height_m
+        values = self.heights.advance(time_s) if self.is_dynamic else self.heights
+        return self.base_m + scale * np.asarray(values, np.float64)
+
+    def slopes(self, cell_m: tuple[float, float], tiling: bool, time_s: float = 0.0) -> np.ndarray:
         """(H, W, 2) metres a metre, towards growing u and v: of the normals where there are any, else of the heights.
 
         Parameters
         ----------
-        cell_m : width and height of a texel of the height map, metres.
+        cell_m : width and height of a texel of the height map, metres. time_s : of heights that move.
         """
         from pellucid.fields.heightfield import slopes_of
 
         if self.normals is None:
-            return np.asarray(slopes_of(self.heights_m, cell_m, tiling))
+            return np.asarray(slopes_of(self.heights_at(time_s), cell_m, tiling))
         n = np.asarray(self.normals, np.float64)
         up = -1.0 if self.normal_convention == "directx" else 1.0
         return np.asarray(-n[..., :2] * (1.0, up) / np.maximum(n[..., 2:], 1e-3))
@@ -278,7 +298,13 @@ def _picture(path: str | PathLike[str], name: str) -> np.ndarray:
     return np.ascontiguousarray(2.0 * rgb - 1.0 if name == "normals" else rgb)
 
 
-def _checked_heights(value: Any) -> np.ndarray:
+def _checked_heights(value: Any, height_m: float | None) -> Any:
+    from pellucid.fields.dynamic import DynamicHeights
+
+    if isinstance(value, DynamicHeights):
+        if height_m is not None:
+            raise SceneError("relief_layer.height_m", "is given with heights that move", "they are metres already")
+        return value
     given = np.full((1, 1), checks.number("relief_layer.heights", value)) if np.ndim(value) == 0 else value
     result = checks.array("relief_layer.heights", given, (None, None))
     _check_size("heights", result)

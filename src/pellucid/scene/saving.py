@@ -186,6 +186,9 @@ def _brdf(brdf: GGX | TabulatedBRDF | None, label: str, beside: Sidecars) -> dic
 
 def _relief_layer(layer: ReliefLayer, label: str, beside: Sidecars) -> dict[str, Any]:
     """Pictures by name, colours and heights that are one value as such, other maps as arrays."""
+    if layer.is_dynamic:
+        kind = type(layer.heights).__name__
+        raise SceneError(f"{label}.heights", f"{kind} that move cannot be written to a scene file", "store one moment")
     maps: dict[str, Any] = {name: getattr(layer, name) for name in MAPS if getattr(layer, name) is not None}
     said: dict[str, Any] = {name: beside.relative(layer.files[name][0]) for name in MAPS if name in layer.files}
     if layer.heights.size == 1 and "heights" not in said:

@@ -57,6 +57,7 @@ ReliefParams = struct(
         ("complexity", "f32"),
         ("hue", "f32"),
         ("mapped_lights", "u32"),  # bit k: light k has a layer of light_map
+        ("silhouettes", "f32"),  # 0 or 1
         ("color", "vec3f"),  # multiplies the map
         ("color_texels", "f32"),  # a tile
         ("diffuse_down", ("vec4f", DIFFUSE_ENTRIES)),

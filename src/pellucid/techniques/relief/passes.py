@@ -38,7 +38,8 @@ class Body:
     Attributes
     ----------
     item : what the user described. quality : what its technique makes of its quality.
-    hull, maps : its geometry and its layers as arrays. bindings : resources of bind group 0 by their WGSL names.
+    hull, maps : its geometry and its layers as arrays. time_s : of heights that move; version : counts their changes.
+    bindings : resources of bind group 0 by their WGSL names.
     light_constants : override constants of how light of the lamps is found; filled in by `illuminate`.
     """
 
@@ -50,6 +51,8 @@ class Body:
     geometry_key: list[Any]
     maps_key: list[Any]
     nbytes: int = 0
+    time_s: float = 0.0
+    version: int = 0
     params: np.ndarray = field(default_factory=lambda: np.zeros((), ReliefParams))
     light_constants: dict[str, float] = field(default_factory=dict)
 
@@ -115,6 +118,31 @@ class ReliefTechnique:
             write_parameters(body)
             self.device.write(body.bindings["relief"], body.params.reshape(1))
 
+    def simulate(self, time_s: float) -> None:
+        """Move the heights of layers that do to a time, and all that depends on them."""
+        for body in self.bodies:
+            item = body.item
+            moving = item.solid.is_dynamic or (item.translucent is not None and item.translucent.is_dynamic)
+            if moving and time_s != body.time_s:
+                body.maps = maps(item, body.hull.tile_m, self.device.float32_filterable, time_s, body.maps)
+                body.time_s, body.version = time_s, body.version + 1
+                self._rewrite(body)
+
+    def _rewrite(self, body: Body) -> None:
+        item, layers, quality = body.item, body.maps, body.quality
+        changed = {"height_map": [layers.heights], "height_bounds": layers.bounds}
+        if item.solid.is_dynamic:
+            changed["solid_surface"] = [_four(s) for s in layers.solid]
+        if item.translucent is not None and item.translucent.is_dynamic:
+            changed["translucent_surface"] = [_four(s) for s in layers.translucent]
+        for name, levels in changed.items():
+            for mip, level in enumerate(levels):
+                self.device.write_texture(body.bindings[name], level, mip=mip)
+        if quality.search != "max_mip":
+            two, tile_m = body.two_layers, body.hull.tile_m
+            of_quality = (quality.search, quality.complexity)
+            body.bindings |= search_bindings(self.device, *of_quality, layers.heights, two, tile_m, item.tiling)
+
     def illuminate(self, lights: Sequence[Any], surroundings: Surroundings) -> None:
         """Light from the lamps' side; kept until lamps, heights or placement change.
 
@@ -135,12 +163,12 @@ class ReliefTechnique:
         body.params["mapped_lights"] = mapped
         self.device.write(body.bindings["relief"], body.params.reshape(1))
         if body.quality.shadows == "horizon":
-            kept = body.bindings["height_map"]
-            solid = body.maps.heights[..., 0]
-            body.bindings["horizon_map"] = light_maps.horizon(solid, body.hull.tile_m, body.item.tiling, kept)
+            heights = body.maps.heights
+            of_body = (body.hull.tile_m, body.item.tiling, heights)
+            body.bindings["horizon_map"] = light_maps.horizon(heights[..., 0], *of_body)
         if plane is not None and mapped:
             bound = {**self._nothing, **body.bindings, **surroundings.bindings}
-            state = (tuple(lights), body.bindings["height_map"])
+            state = (tuple(lights), body.bindings["height_map"], body.version)
             light_maps.update(bound, body.params, plane, len(lights), body.constants, state)
         body.bindings |= light_maps.bindings
 
@@ -197,7 +225,10 @@ class ReliefTechnique:
             bindings["relief"] = before[number].bindings["relief"]
         else:
             bindings["relief"] = self.device.buffer(ReliefParams.itemsize, "uniform", "relief")
-        return Body(item, quality, shape, layers, bindings, geometry_key, maps_key, nbytes)
+        body = Body(item, quality, shape, layers, bindings, geometry_key, maps_key, nbytes)
+        if alike:
+            body.time_s, body.version = alike.time_s, alike.version
+        return body
 
     def _upload(self, layers: Maps, tiling: bool) -> dict[str, Any]:
         address = "repeat" if tiling else "clamp"
@@ -273,6 +304,7 @@ def write_parameters(body: Body) -> None:
     p["shadow_steps"], p["hue"] = quality.shadow_steps, quality.hue
     p["adapt_angle"], p["adapt_distance"] = quality.adapt_angle, quality.adapt_distance
     p["complexity"] = quality.complexity
+    p["silhouettes"] = quality.silhouettes
     p["color"] = (1.0, 1.0, 1.0) if isinstance(item.solid.colors, np.ndarray) else item.solid.colors
     p["color_texels"] = max(body.maps.colors[0].shape[:2])
     p["diffuse_down"], p["diffuse_back"] = diffuse_tables(item.ambient_n, (float(n[0]), float(n[1]), float(n[2])))

@@ -50,32 +50,61 @@ def hull(item: ReliefSurface) -> Hull:
     return hull_of(vertices, faces, normals, uvs * tiles)
 
 
-def maps(item: ReliefSurface, tile_m: tuple[float, float], exact: bool = True) -> Maps:
-    """The maps of a surface whose tiles are `tile_m` metres large in the mean; heights as halves unless `exact`."""
+def maps(
+    item: ReliefSurface,
+    tile_m: tuple[float, float],
+    exact: bool = True,
+    time_s: float = 0.0,
+    before: Maps | None = None,
+) -> Maps:
+    """The maps of a surface whose tiles are `tile_m` metres large in the mean.
+
+    Parameters
+    ----------
+    exact : keep heights in 32 bits; else in halves.
+    time_s : of heights that move. before : maps of the same surface at another time; what rests is taken from them.
+    """
     solid, translucent = item.solid, item.translucent
-    layers = [solid.heights_m] if translucent is None else [solid.heights_m, translucent.heights_m]
+    both = [solid] if translucent is None else [solid, translucent]
+    layers = [layer.heights_at(time_s) for layer in both]
     size = (max(h.shape[0] for h in layers), max(h.shape[1] for h in layers))
     layers = [resized_heights(h, size, item.tiling) for h in layers]
     if not exact:  # bounds must hold for the heights that are drawn
         layers = [np.asarray(h, np.float16).astype(np.float64) for h in layers]
     upper = layers[1] if translucent is not None else layers[0] - 1.0
-    colors = solid.colors if isinstance(solid.colors, np.ndarray) else np.ones((1, 1, 3), np.float32)
-    nothing = [np.zeros((1, 1, 2), np.float32)]
     heights = np.stack([layers[0], upper], axis=-1).astype(np.float32)
+    limits = [(float(h.min()), float(h.max())) for h in (layers[0], upper)]
+    for k, layer in enumerate(both):
+        if layer.is_dynamic:
+            limits[k] = layer.limits_m
     return Maps(
         heights,
-        heights.min(axis=(0, 1)),
-        heights.max(axis=(0, 1)),
+        np.array([low for low, _ in limits]),
+        np.array([high for _, high in limits]),
         bounds_pyramid(layers[0], upper if translucent is not None else None, item.tiling),
-        levels(_slopes(solid, tile_m, item.tiling)),
-        nothing if translucent is None else levels(_slopes(translucent, tile_m, item.tiling)),
-        levels(np.asarray(colors, np.float32)),
+        before.solid if before and not solid.is_dynamic else levels(_slopes(solid, tile_m, item.tiling, time_s)),
+        _upper_slopes(item, tile_m, time_s, before),
+        before.colors if before else levels(_colors(solid)),
     )
 
 
-def _slopes(layer: ReliefLayer, tile_m: tuple[float, float], tiling: bool) -> np.ndarray:
+def _upper_slopes(
+    item: ReliefSurface, tile_m: tuple[float, float], time_s: float, before: Maps | None
+) -> list[np.ndarray]:
+    if item.translucent is None:
+        return [np.zeros((1, 1, 2), np.float32)]
+    if before and not item.translucent.is_dynamic:
+        return before.translucent
+    return levels(_slopes(item.translucent, tile_m, item.tiling, time_s))
+
+
+def _colors(layer: ReliefLayer) -> np.ndarray:
+    return np.asarray(layer.colors if isinstance(layer.colors, np.ndarray) else np.ones((1, 1, 3)), np.float32)
+
+
+def _slopes(layer: ReliefLayer, tile_m: tuple[float, float], tiling: bool, time_s: float) -> np.ndarray:
     height, width = layer.heights.shape
-    return np.asarray(layer.slopes((tile_m[0] / width, tile_m[1] / height), tiling), np.float32)
+    return np.asarray(layer.slopes((tile_m[0] / width, tile_m[1] / height), tiling, time_s), np.float32)
 
 
 def levels(image: np.ndarray) -> list[np.ndarray]:

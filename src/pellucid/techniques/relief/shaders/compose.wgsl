@@ -32,6 +32,7 @@ fn seen_radiance(pixel: vec2f, record: vec4u) -> vec3f {
         uv = relief_offset(frame_at, direction_ws);
     }
     let footprint = relief_footprint(frame_at, p_ws, direction_ws);
+    relief_pixel_tiles = footprint;
     let on_wall = bits.x == 0.0 && any(frame_at.wall_ws != vec3f(0.0));
     let h = relief_height_along(ray, bits.x);
     if !TWO_LAYERS {

@@ -1,6 +1,7 @@
 // First pass: what each pixel sees of the relief, and how deep.
 //!import techniques/relief/shaders/hull
 //!import techniques/relief/shaders/enter
+//!import techniques/relief/shaders/footprint
 
 struct Found {
     @location(0) record: vec4u,  // bits of t and of two barycentric weights; triangle * 4 + layer
@@ -26,6 +27,7 @@ fn fs_main(in: HullVarying) -> Found {
 fn found_in(triangle: u32, b: vec2f, direction_ws: vec3f) -> Found {
     let frame_at = relief_frame(triangle, b);
     let ray = relief_ray(frame_at, frame_at.uv, frame_at.h, direction_ws);
+    relief_pixel_tiles = relief_footprint(frame_at, frame_at.p_ws, direction_ws);
     let hit = relief_enter(frame_at, ray);
     let bits = bitcast<vec3u>(vec3f(hit.t, b));
     return Found(vec4u(bits, triangle * 4u + hit.layer), depth_of(frame_at.p_ws + hit.t * direction_ws));

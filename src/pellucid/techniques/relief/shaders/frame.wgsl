@@ -1,6 +1,8 @@
 // The frame of a relief at a place: how directions of the world become tiles and heights.
 //!import techniques/relief/shaders/bindings
 
+const RELIEF_FLAT = 1e-5;  // 1/m; what bends less counts as flat
+
 struct ReliefFrame {
     p_ws: vec3f,       // where the ray begins, height included
     uv: vec2f,
@@ -69,10 +71,13 @@ fn relief_frame_at_height(
     let t_flat = tangent - n * dot(n, tangent);
     let b_flat = bitangent - n * dot(n, bitangent);
     let base = relief_duals(t_flat, b_flat, n);
-    let t_high = t_flat + h * (form.x * base[0] + form.y * base[1]);
-    let b_high = b_flat + h * (form.y * base[0] + form.z * base[1]);
+    let n_u = form.x * base[0] + form.y * base[1];
+    let n_v = form.y * base[0] + form.z * base[1];
+    let t_high = t_flat + h * n_u;
+    let b_high = b_flat + h * n_v;
     let duals = relief_duals(t_high, b_high, n);
-    return ReliefFrame(p_ws, uv, h, t_high, b_high, n, duals[0], duals[1], form, wall_ws);
+    let form_high = vec3f(dot(n_u, t_high), dot(n_u, b_high), dot(n_v, b_high));
+    return ReliefFrame(p_ws, uv, h, t_high, b_high, n, duals[0], duals[1], form_high, wall_ws);
 }
 
 // Two vectors of the plane that measure along a and along b; n is its unit normal
@@ -87,8 +92,26 @@ fn relief_duals(a: vec3f, b: vec3f, n: vec3f) -> mat2x3f {
 fn relief_ray(frame_at: ReliefFrame, uv: vec2f, h: f32, direction_ws: vec3f) -> ReliefRay {
     let duv = vec2f(dot(frame_at.T_dual, direction_ws), dot(frame_at.B_dual, direction_ws));
     let form = frame_at.form;
-    let bend = 0.5 * (form.x * duv.x * duv.x + 2.0 * form.y * duv.x * duv.y + form.z * duv.y * duv.y);
-    return ReliefRay(uv, h, duv, dot(frame_at.N, direction_ws), bend);
+    let bend = 0.5 * relief.silhouettes * (form.x * duv.x * duv.x + 2.0 * form.y * duv.x * duv.y + form.z * duv.y * duv.y);
+    let dh = dot(frame_at.N, direction_ws);
+    return ReliefRay(uv, h, duv, dh, relief_round_bend(bend, dh, h - relief.hull_low));
+}
+
+// Over a ball of radius r, heights are sqrt(r^2 + 2 r dh t + t^2) - r, and no parabola. The one that is taken keeps the
+// slope at the start, and ends right: at the lowest height of the relief, `depth` below, or else at the closest
+// approach, so that outlines are right.
+fn relief_round_bend(bend: f32, dh: f32, depth: f32) -> f32 {
+    if bend < RELIEF_FLAT || dh >= 0.0 || depth <= 0.0 {
+        return bend;
+    }
+    let tangential_2 = max(1.0 - dh * dh, 0.0);
+    let radius = tangential_2 / (2.0 * bend);
+    let under = dh * dh - depth / radius * (2.0 - depth / radius);
+    if under < 0.0 || depth > radius {
+        return (1.0 + sqrt(tangential_2)) / (4.0 * radius);
+    }
+    let t = depth * (2.0 - depth / radius) / (sqrt(under) - dh);
+    return max((-depth - dh * t) / (t * t), 0.0);
 }
 
 fn relief_height_along(ray: ReliefRay, t: f32) -> f32 {

@@ -3,6 +3,7 @@
 //!import surroundings/shaders/shade
 //!import techniques/relief/shaders/light
 //!import techniques/relief/shaders/diffuse
+//!import techniques/relief/shaders/footprint
 
 override RELIEF_NORMALS: bool = true;  // whether slopes turn the normal
 
@@ -10,17 +11,6 @@ fn relief_color(uv: vec2f, footprint: f32) -> vec3f {
     let texels = vec2f(textureDimensions(color_map)) * footprint;
     let level = max(log2(max(max(texels.x, texels.y), 1e-6)), 0.0);
     return relief.color * textureSampleLevel(color_map, surface_sampler, relief_map_uv(uv), level).rgb;
-}
-
-// Tiles that a pixel covers at a point
-fn relief_footprint(frame_at: ReliefFrame, p_ws: vec3f, direction_ws: vec3f) -> f32 {
-    let cosine = clamp(-dot(frame_at.N, direction_ws), 0.05, 1.0);
-    return footprint_m(p_ws) * inverseSqrt(cosine) / relief_side_m(frame_at);
-}
-
-// Shorter side of a tile in metres
-fn relief_side_m(frame_at: ReliefFrame) -> f32 {
-    return max(min(length(frame_at.T), length(frame_at.B)), 1e-9);
 }
 
 fn relief_solid_point(frame_at: ReliefFrame, uv: vec2f, p_ws: vec3f, footprint: f32) -> ReliefPoint {
