@@ -45,7 +45,7 @@ def brilliant() -> Scene:
     stone = RefractiveVolume.from_sdf(
         shapes.brilliant_cut(diameter), "diamond", 160, (1.06 * diameter, 0.72 * diameter, 1.06 * diameter),
         position=(0.0, 0.0047, 0.0), rotation=(24.0, 0.0, 0.0), quality=Quality(bounces=8, min_weight=0.02),
-        light=stage.QUICK_LIGHT,
+        light=stage.FACET_LIGHT,
     )  # fmt: skip
     slate = stage.stone(512, (0.012, 0.013, 0.017), 0.22)
     return Scene(
