@@ -23,8 +23,8 @@ fn relief_by_bounds(ray: ReliefRay, reach: f32, kind: u32) -> ReliefHit {
     let walk = relief_walk(ray);
     let end = relief_end(walk, ray, reach);
     let top = firstLeadingBit(max(relief.texels.x, relief.texels.y));
-    // Squares as large as a quarter of the way: larger ones are hardly ever free.
-    var level = min(u32(max(log2(walk.spread * end) - 2.0, 0.0)), top);
+    // Squares as large as an eighth of the way: larger ones are hardly ever free.
+    var level = min(u32(max(log2(walk.spread * end) - 3.0, 0.0)), top);
     var t = 0.0;
     for (var turn = 0u; turn < RELIEF_TURNS && t < end; turn++) {
         let cell = relief_cell(walk, t);
@@ -51,8 +51,10 @@ fn relief_by_bounds(ray: ReliefRay, reach: f32, kind: u32) -> ReliefHit {
         let fall = max(-relief_steepest_fall(ray, t, end), 1e-20);
         let enters = min(t + max(relief_height_along(ray, t) - ceiling, 0.0) / fall, leaves);
         t = select(leaves, select(enters, t, kind == RELIEF_LEAVE), closer);
-        // A ray that leaves a larger square together with this one may do with larger ones.
-        let outward = any(((node.index & vec2u(1u)) == vec2u(walk.ahead)) & (relief_cell(walk, t) != cell));
+        // Over the border of this square and of the one of twice its size at once: the next may be that large.
+        let borders = (node.far - walk.origin) * walk.inverse;
+        let last_of_two = (node.index & vec2u(1u)) == vec2u(walk.ahead);
+        let outward = select(last_of_two.y, last_of_two.x, borders.x < borders.y);
         level = select(select(level, min(level + 1u, top), outward), level - 1u, closer);
     }
     return ReliefHit(reach, RELIEF_NONE);
