@@ -55,7 +55,6 @@ ReliefParams = struct(
         ("adapt_angle", "f32"),  # 0 or 1
         ("adapt_distance", "f32"),
         ("complexity", "f32"),
-        ("hue", "f32"),
         ("mapped_lights", "u32"),  # bit k: light k has a layer of light_map
         ("silhouettes", "f32"),  # 0 or 1
         ("color", "vec3f"),  # multiplies the map
