@@ -115,7 +115,7 @@ class LightMaps:
         self._size: tuple[int, int, int, bool] | None = None
         self._state: Any = None
         self._planes: list[Any] = []
-        self._horizon: tuple[Any, Any] | None = None
+        self._horizon: tuple[Any, Any, Any] | None = None
         self._params = passes.device.buffer(ReliefParams.itemsize, "uniform", "relief of light maps")
         self._allocate((1, 1, 1, False))
 
@@ -168,16 +168,17 @@ class LightMaps:
         return True
 
     def horizon(self, heights: np.ndarray, tile_m: tuple[float, float], tiling: bool, kept: Any) -> Any:
-        """View of the horizon map of the solid layer; `kept` is the texture that it belongs to."""
-        if self._horizon is None or self._horizon[0] is not kept:
+        """View of the horizon map of the solid layer; `kept` is what its heights came from, told apart by identity."""
+        state = (tile_m, tiling, heights.shape)
+        if self._horizon is None or self._horizon[0] is not kept or self._horizon[1] != state:
             rows, columns = heights.shape
             stack = horizon_map(heights, (tile_m[0] / columns, tile_m[1] / rows), tiling)
             texture = self.passes.device.texture(
                 size=(columns, rows), format="r16float", layers=len(stack), label="horizons"
             )
             self.passes.device.write_texture(texture, stack[..., None].astype(np.float16))
-            self._horizon = kept, texture.create_view(dimension="2d-array")
-        return self._horizon[1]
+            self._horizon = kept, state, texture.create_view(dimension="2d-array")
+        return self._horizon[2]
 
     def _allocate(self, size: tuple[int, int, int, bool]) -> None:
         if size == self._size:

@@ -163,9 +163,10 @@ class ReliefTechnique:
         body.params["mapped_lights"] = mapped
         self.device.write(body.bindings["relief"], body.params.reshape(1))
         if body.quality.shadows == "horizon":
-            heights = body.maps.heights
-            of_body = (body.hull.tile_m, body.item.tiling, heights)
-            body.bindings["horizon_map"] = light_maps.horizon(heights[..., 0], *of_body)
+            solid, heights = body.item.solid, body.maps.heights[..., 0]
+            kept = body.maps.heights if solid.is_dynamic else solid
+            of_body = (body.hull.tile_m, body.item.tiling, kept)
+            body.bindings["horizon_map"] = light_maps.horizon(heights, *of_body)
         if plane is not None and mapped:
             bound = {**self._nothing, **body.bindings, **surroundings.bindings}
             state = (tuple(lights), body.bindings["height_map"], body.version)
