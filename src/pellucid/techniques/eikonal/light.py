@@ -32,6 +32,7 @@ from pellucid.techniques.eikonal.light_params import (
     CAPACITY,
     FLUENCE_BYTES,
     OUT_CAPACITY,
+    batch_of,
     cells_of,
     grid_of,
     others_of,
@@ -192,7 +193,7 @@ class LightSimulator:
             for number, followed in enumerate(self._followed)
             for source in followed.sources
             if worth_of(source, draw[1]) > 0.0
-            for first in range(0, source.tiles, BATCH)
+            for first in range(0, source.tiles, batch_of(source))
         ]
         for done, (number, source, draw, first) in enumerate(jobs):
             self._batch(number, source, draw, first, surroundings, land)

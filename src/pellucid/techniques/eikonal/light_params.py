@@ -19,9 +19,15 @@ if TYPE_CHECKING:
 CAPACITY = 1 << 17  # patches in a list
 OUT_CAPACITY = 3 << 16  # bundles that leave in one batch
 BATCH = 1 << 14  # patches of the front that are followed at a time
+FINE_FRONT = 1 << 16  # patches
 FLUENCE_BYTES = 12  # a voxel
 # Patches that carry less of the front's largest than this are not divided; they leave a track of random points instead.
 DIVIDE_ABOVE = 1.0 / 20.0
+
+
+def batch_of(source: Source) -> int:
+    """How many patches of a front are followed at a time. Fine fronts meet fine details, and are divided most."""
+    return BATCH if source.tiles <= FINE_FRONT else BATCH // 2
 
 
 def grid_of(prepared: Prepared, quality: LightQuality, most_bytes: int) -> tuple[int, int, int]:
@@ -99,7 +105,7 @@ def params_of(record: np.ndarray, source: Source, weights: np.ndarray, first: in
     out["patch_flux"] *= worth_of(source, weights)
     out["face_count"] = len(source.faces)
     out["faces"][: len(source.faces)] = source.faces
-    out["batch_first"], out["batch_count"] = first, min(BATCH, source.tiles - first)
+    out["batch_first"], out["batch_count"] = first, min(batch_of(source), source.tiles - first)
     return out
 
 
