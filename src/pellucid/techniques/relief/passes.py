@@ -122,8 +122,7 @@ class ReliefTechnique:
         """Move the heights of layers that do to a time, and all that depends on them."""
         for body in self.bodies:
             item = body.item
-            moving = item.solid.is_dynamic or (item.translucent is not None and item.translucent.is_dynamic)
-            if moving and time_s != body.time_s:
+            if _moves(item) and time_s != body.time_s:
                 body.maps = maps(item, body.hull.tile_m, self.device.float32_filterable, time_s, body.maps)
                 body.time_s, body.version = time_s, body.version + 1
                 self._rewrite(body)
@@ -138,7 +137,7 @@ class ReliefTechnique:
         for name, levels in changed.items():
             for mip, level in enumerate(levels):
                 self.device.write_texture(body.bindings[name], level, mip=mip)
-        if quality.search != "max_mip":
+        if quality.complexity:
             two, tile_m = body.two_layers, body.hull.tile_m
             of_quality = (quality.search, quality.complexity)
             body.bindings |= search_bindings(self.device, *of_quality, layers.heights, two, tile_m, item.tiling)
@@ -210,6 +209,9 @@ class ReliefTechnique:
         else:
             bindings["relief_vertices"] = self.device.buffer(shape.vertices, "storage", "relief vertices")
         quality = quality_of(item.technique, item.quality)
+        if _moves(item) and quality.search in ("cone", "distance"):
+            # Bounds are new in a moment; maps of free space are not, and find nothing that bounds do not.
+            quality = quality.replace(search="max_mip")
         two_layers = draws_two_layers(item)
         maps_key = [*_maps_key(item, shape.tile_m), quality.search, quality.complexity, two_layers]
         alike = next((b for b in before if _same(b.maps_key, maps_key)), None)
@@ -324,6 +326,11 @@ def _hull_range(body: Body, low: float, high: float, upper: float) -> tuple[floa
     top = max(high, upper) if body.two_layers else high
     margin = max(MARGIN * (top - low), 1e-5 * max(abs(top), abs(low)), 1e-4 * min(body.hull.tile_m))
     return low - margin, top + margin
+
+
+def _moves(item: ReliefSurface) -> bool:
+    """Whether heights of the surface change with time."""
+    return item.solid.is_dynamic or (item.translucent is not None and item.translucent.is_dynamic)
 
 
 def _geometry_key(item: ReliefSurface) -> list[Any]:
