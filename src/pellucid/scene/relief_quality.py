@@ -36,10 +36,12 @@ class ReliefQuality(Value):
     complexity : take fewer steps where the heights are simple.
     reflection : what mirrored rays see: the ``"environment"`` (see below), with ``"plane"`` first the relief as if it
         were flat, with ``"search"`` the relief itself.
-    shadows : of the solid layer on itself.
-    shadow_steps : steps of a ray towards a lamp, 1 to 256.
-    occlusion : what the translucent layer takes from light on its way to the solid one: nothing, worked out in every
-        ``"fragment"``, or once a light has moved in a ``"texture"``.
+    shadows : of the solid layer on itself: ``"hard"`` for a ray to the middle of each lamp, ``"soft"`` for the share
+        of the lamp's disc that is seen, ``"horizon"`` for the same from a map made beforehand.
+    shadow_steps : steps of a ray towards a lamp where `search` is linear, 1 to 256.
+    occlusion : what the translucent layer takes from light on its way to the solid one, beyond what lies right above
+        each point: nothing, worked out in every ``"fragment"``, or, shadows included, once a light has moved in a
+        ``"texture"``. Textures hold on plane meshes, for lamps far away or a single tile; else it is fragments.
     hue : light on its way through the translucent layer is tinted; else it is dimmed evenly.
     caustics : the translucent layer focuses light on the solid one.
     silhouettes : rays may leave the relief over the horizon; else they go on until they meet something.
@@ -61,9 +63,9 @@ class ReliefQuality(Value):
     adapt_distance: bool = True
     complexity: bool = False
     reflection: str = "environment"
-    shadows: str = "none"
+    shadows: str = "soft"
     shadow_steps: int = 16
-    occlusion: str = "none"
+    occlusion: str = "texture"
     hue: bool = True
     caustics: bool = False
     silhouettes: bool = True
@@ -129,6 +131,7 @@ def quality_of(technique: str, quality: ReliefQuality) -> ReliefQuality:
     elif step != "best":
         chosen = quality.occlusion if quality.occlusion != "none" else "texture"
         changes |= {"occlusion": "fragment" if thesis else chosen, "hue": step == "occlusion_hue", "caustics": False}
+        changes |= {"shadows": "hard"} if thesis else {}
     elif thesis:
         changes |= {"occlusion": "fragment", "hue": True}
     return quality.replace(**changes)

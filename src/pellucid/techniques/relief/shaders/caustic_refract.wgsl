@@ -34,7 +34,7 @@ fn beam_of(texel: vec2u) -> ReliefBeam {
     if t > reach {
         return beam;
     }
-    let seen = relief_shadow(relief_ray(frame_at, uv, both.y, lamp.to_ws), lamp.tan_radius);
+    let seen = relief_shadow(relief_ray(frame_at, uv, both.y, lamp.to_ws), lamp.tan_radius, lamp.distance_m);
     let flux = seen * facing / (dot(n_ws, plane.normal) * rise);
     let lost = fresnel_dielectric(facing, relief.n_outside, relief.n_layer.g);
     beam.flux = flux * (1.0 - lost) * transmittance(relief.absorption, t);

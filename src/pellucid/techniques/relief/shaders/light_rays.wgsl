@@ -8,17 +8,18 @@ override RELIEF_OCCLUSION: bool = false;  // whether the translucent layer dims 
 struct ReliefLamp {
     to_ws: vec3f,      // unit, towards its middle
     tan_radius: f32,   // of the angle that its radius is seen under
+    distance_m: f32,
 }
 
 // A rectangle counts as the disc of the same area. (Kinds of lamps: surroundings/layouts.py)
 fn relief_lamp(light: u32, p_ws: vec3f) -> ReliefLamp {
     let lamp = lights[light];
     if lamp.kind == 0u {
-        return ReliefLamp(lamp.direction, lamp.radius);
+        return ReliefLamp(lamp.direction, lamp.radius, RELIEF_NOWHERE);
     }
     let to_lamp = lamp.position - p_ws;
     let distance_m = max(length(to_lamp), 1e-9);
-    return ReliefLamp(to_lamp / distance_m, lamp.radius / distance_m);
+    return ReliefLamp(to_lamp / distance_m, lamp.radius / distance_m, distance_m);
 }
 
 // Share of each channel that reaches (uv, h) of the solid layer, which lies at p_ws
@@ -30,7 +31,7 @@ fn relief_light_rays(frame_at: ReliefFrame, p_ws: vec3f, uv: vec2f, h: f32, ligh
     if within {
         way = relief_bent(n_ws, lamp.to_ws);
     }
-    let shadow = relief_shadow(relief_ray(frame_at, uv, h, way), lamp.tan_radius);
+    let shadow = relief_shadow(relief_ray(frame_at, uv, h, way), lamp.tan_radius, lamp.distance_m);
     if !(TWO_LAYERS && RELIEF_OCCLUSION) || shadow <= 0.0 {
         return vec3f(shadow);
     }

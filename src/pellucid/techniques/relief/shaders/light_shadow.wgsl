@@ -3,8 +3,9 @@
 //!import techniques/relief/shaders/light_stepped
 //!import techniques/relief/shaders/light_walk
 
-// `tan_radius`: of the angle that the lamp's radius is seen under. The ray begins on the layer, or over it.
-fn relief_shadow(ray: ReliefRay, tan_radius: f32) -> f32 {
+// `tan_radius`: of the angle that the lamp's radius is seen under. The ray begins on the layer, or over it; what lies
+// beyond the lamp throws no shadow.
+fn relief_shadow(ray: ReliefRay, tan_radius: f32, distance_m: f32) -> f32 {
     if RELIEF_SHADOWS == 0u {
         return 1.0;
     }
@@ -13,29 +14,29 @@ fn relief_shadow(ray: ReliefRay, tan_radius: f32) -> f32 {
         return relief_horizon_shadow(ray, radius);
     }
     if RELIEF_LIGHT_STEPPED {
-        return relief_stepped_shadow(ray, radius);
+        return relief_stepped_shadow(ray, radius, distance_m);
     }
-    return relief_disc_over(ray, max(radius, SHADOW_LEAST_TAN));
+    return relief_disc_over(ray, max(radius, SHADOW_LEAST_TAN), distance_m);
 }
 
 // What stands h under the ray a horizontal way s off is seen at the elevation e' below that of the lamp, e:
 // tan e' = tan e - h/s, and tan(e - e') = h/s / (1 + tan e tan e'). h/d of [timonen2006, eq. 1] is cos e h/s.
-fn relief_disc_over(ray: ReliefRay, radius: f32) -> f32 {
+fn relief_disc_over(ray: ReliefRay, radius: f32, distance_m: f32) -> f32 {
     let cosine = sqrt(max(1.0 - ray.dh * ray.dh, 1e-6));
     let rise = ray.dh / cosine;
     let wide = radius * (1.0 + rise * rise);
     let most = cosine * wide / max(1.0 + rise * radius, 0.1);
     let least = -cosine * wide / max(1.0 - rise * radius, 1e-6);
-    let nearest = relief_least_gap(ray, most, least) / cosine;
+    let nearest = relief_least_gap(ray, most, least, distance_m) / cosine;
     return disc_share(nearest / (radius * max(1.0 + rise * (rise - nearest), 1e-6)));
 }
 
 // min(most, least h/d along the ray), d metres [timonen2006, eq. 1]; ends as soon as it is below `enough`. Squares that
 // cannot hold anything nearer than the nearest so far are passed at once. The first texel is left out: there the ray
 // would see the facets of the very surface that it starts from.
-fn relief_least_gap(ray: ReliefRay, most: f32, enough: f32) -> f32 {
+fn relief_least_gap(ray: ReliefRay, most: f32, enough: f32, distance_m: f32) -> f32 {
     let walk = relief_walk(ray);
-    let reach = relief_shadow_reach(ray, most);
+    let reach = min(relief_shadow_reach(ray, most), distance_m);
     var t = 1.0 / max(max(abs(walk.step.x), abs(walk.step.y)), 1e-12);
     var least = most;
     var level = min(1u, light_top_level());

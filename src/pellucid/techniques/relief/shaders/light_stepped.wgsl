@@ -8,8 +8,8 @@ const SHADOW_LEAST_TAN = 1e-5;      // a lamp that is a point
 
 // The thesis's: steps up to the top of the layer; clamp(h/d l/r + 1/2) [timonen2006, eq. 4], where r is to be read as
 // the diameter: at w = r/2 of eq. 3 the light is full, which its text says of w = r.
-fn relief_stepped_shadow(ray: ReliefRay, radius: f32) -> f32 {
-    let reach = min(relief_rising(ray, relief.solid_high), relief_reach(ray));
+fn relief_stepped_shadow(ray: ReliefRay, radius: f32, distance_m: f32) -> f32 {
+    let reach = min(min(relief_rising(ray, relief.solid_high), relief_reach(ray)), distance_m);
     let step = reach / f32(max(relief.shadow_steps, 1u));
     var least = 1e30;
     for (var k = 1u; k <= relief.shadow_steps; k++) {
