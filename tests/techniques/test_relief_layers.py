@@ -139,3 +139,24 @@ def test_plane_refraction_of_flat_layers_is_that_of_the_search(renderer: pl.Rend
         item = layered(color=ramp, quality=pl.ReliefQuality(refraction=refraction))
         found.append(middle(renderer, pl.Scene(view(40.0), pl.Environment.constant(1.0), objects=[item])))
     np.testing.assert_allclose(found[0], found[1], rtol=1e-3)
+
+
+def test_a_cube_of_the_scene_shows_what_rays_do(renderer: pl.Renderer) -> None:
+    ways = [(0.8, 0.6, 0.0), (-0.8, 0.6, 0.0), (0.0, 0.6, 0.8), (0.0, 0.6, -0.8), (0.0, 1.0, 0.01)]
+    colors = [(0.9, 0.1, 0.1), (0.1, 0.9, 0.1), (0.1, 0.1, 0.9), (0.9, 0.9, 0.1), (0.1, 0.9, 0.9)]
+    things = [
+        pl.Mesh.box(3.0, position=tuple(8.0 * np.array(way)), base_color=color)
+        for way, color in zip(ways, colors, strict=True)
+    ]
+    sky = pl.Environment.constant(1.0)
+    items = [
+        layered(quality=pl.ReliefQuality(environment=environment), color=(0.0, 0.0, 0.0))
+        for environment in ("rays", "cube_once")
+    ]
+    found = []
+    for x, y, z in ways:
+        camera = pl.Camera(position=(-2 * x, 2 * y, -2 * z), up=(0.1, 0, 1), orthographic_height_m=0.1, far_m=10.0)
+        by_ray, by_cube = (middle(renderer, pl.Scene(camera, sky, objects=[item, *things])) for item in items)
+        np.testing.assert_allclose(by_cube, by_ray, rtol=0.01)
+        found.append(by_ray / by_ray.max())
+    assert all(np.abs(a - b).max() > 0.1 for k, a in enumerate(found) for b in found[:k])

@@ -13,6 +13,7 @@ from pellucid.gpu.modules import source
 from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT, Targets
 from pellucid.scene.placement import placement_matrix
 from pellucid.scene.relief_quality import SEARCHES, STEPS, ReliefQuality, quality_of
+from pellucid.techniques.relief.cube import SceneCube
 from pellucid.techniques.relief.diffuse import diffuse_tables
 from pellucid.techniques.relief.frames import Hull
 from pellucid.techniques.relief.layouts import ReliefParams
@@ -76,6 +77,7 @@ class Body:
             "RELIEF_NORMALS": float(self.step != "color"),
             "RELIEF_SEARCH": float(SEARCHES.index(quality.search)),
             "RELIEF_REFRACTION": float(REFRACTIONS.index(quality.refraction)),
+            "RELIEF_CUBE": float(quality.environment.startswith("cube")),
             "RELIEF_REFLECTION": float(REFLECTIONS.index(quality.reflection)),
             **self.light_constants,
         }
@@ -100,6 +102,7 @@ class ReliefTechnique:
         self.bodies: list[Body] = []
         self._passes: dict[Any, RenderPass] = {}
         self._hits: Any = None
+        self._cubes: dict[int, SceneCube] = {}
         self._nothing = _absent(device)
         self._light_passes = LightPasses(device)
         self._light_maps: list[LightMaps] = []
@@ -114,6 +117,7 @@ class ReliefTechnique:
         """Make maps and meshes resident that are new, and write the parameters of every surface."""
         before = list(self.bodies)
         self.bodies = [self._body(item, before, number) for number, item in enumerate(items)]
+        self._cubes = {number: cube for number, cube in self._cubes.items() if number < len(items)}
         for body in self.bodies:
             write_parameters(body)
             self.device.write(body.bindings["relief"], body.params.reshape(1))
@@ -177,7 +181,9 @@ class ReliefTechnique:
     ) -> None:
         """Draw every surface into colour and depth, before what is there only where it is nearer."""
         hits = self._hit_target(targets.size)
-        for body in self.bodies:
+        for number, body in enumerate(self.bodies):
+            if body.quality.environment.startswith("cube"):
+                self._look_around(encoder, number, body, surroundings, timer)
             shared = {**self._nothing, **body.bindings, **surroundings.bindings}
             self._pass("find", body.constants).run(
                 encoder,
@@ -198,6 +204,16 @@ class ReliefTechnique:
                 timer=timer,
                 label="relief shade",
             )
+
+    def _look_around(self, encoder: Any, number: int, body: Body, surroundings: Surroundings, timer: Any) -> None:
+        """Draw the cube of a body, if it has none where it stands, or wants one for every picture."""
+        again = body.quality.environment == "cube_every_frame" and surroundings.sample_index == 0
+        if number not in self._cubes:
+            self._cubes[number], again = SceneCube(self.device), True
+        cube, center_ws = self._cubes[number], body.params["world_from_object"][3, :3]
+        if again or not cube.belongs_to(body.item.mesh, center_ws):
+            cube.draw(encoder, body.item.mesh, center_ws, surroundings, timer)
+        body.bindings["scene_cube"] = cube.view
 
     def _body(self, item: ReliefSurface, before: list[Body], number: int) -> Body:
         """A body whose geometry and maps are taken from those before where they are the same."""
@@ -367,6 +383,8 @@ def _absent(device: Device) -> dict[str, Any]:
     image = device.texture(size=(1, 1), format="rgba16float", label="absent")
     stack = device.texture(size=(1, 1), format="rgba16float", label="absent").create_view(dimension="2d-array")
     volume = device.texture(format="r16float", size=(1, 1, 1), dimension="3d", label="absent")
+    cube = device.texture(size=(1, 1), format="rgba16float", layers=6, label="absent").create_view(dimension="cube")
     names = ("cone_map", "complexity_map")
     stacks = ("horizon_map", "light_map", "relief_caustic_map")
-    return {name: image for name in names} | {name: stack for name in stacks} | {"distance_map": volume}
+    rest = {"distance_map": volume, "scene_cube": cube}
+    return {name: image for name in names} | {name: stack for name in stacks} | rest

@@ -18,3 +18,4 @@
 @group(0) @binding(13) var complexity_map: texture_2d<f32>;
 @group(0) @binding(14) var light_map: texture_2d_array<f32>;  // a layer a light: share that reaches the solid layer
 @group(0) @binding(15) var relief_caustic_map: texture_2d_array<f32>;  // a layer a light
+@group(0) @binding(16) var scene_cube: texture_cube<f32>;  // what is around the object
