@@ -18,6 +18,9 @@ SCENE = [
     "Mesh",
     "RefractiveVolume",
     "Quality",
+    "ReliefLayer",
+    "ReliefQuality",
+    "ReliefSurface",
 ]
 CALLS = ["render", "animate", "trace", "probe"]
 RESULTS = ["Frame", "Rays"]
