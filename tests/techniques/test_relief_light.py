@@ -222,6 +222,18 @@ def test_a_ripple_focuses_first_at_its_focal_length(lit: Lit) -> None:
     assert depths[int(np.argmax(under))] == pytest.approx(focal, rel=0.07)
 
 
+def test_dispersion_parts_the_colours_of_a_caustic(lit: Lit) -> None:
+    """Blue is bent more: over a bottom that lies before the focus it is gathered more."""
+    ripple = waves(0.002)
+    look = {"absorption": (0.0, 0.0, 0.0), "quality": {"caustics": True}, "medium": "N-SF11"}
+    solid = np.full((64, 64), -0.02)
+    parted = lit.caustic(relief(solid, ripple, dispersion=True, **look), sun(90.0))
+    alike = lit.caustic(relief(solid, ripple, **look), sun(90.0))
+    assert np.abs(alike - alike[..., :1]).max() == 0.0
+    assert (np.diff(parted.std(axis=(0, 1))) > 0.0).all()
+    np.testing.assert_allclose(parted.mean(axis=(0, 1)), alike.mean(axis=(0, 1)), rtol=0.01)
+
+
 def test_light_is_worked_out_once_for_each_move(lit: Lit, device: Device) -> None:
     surface = relief(waves(0.02), quality={"shadows": "hard"})
     lamp = sun(30.0, 20.0)

@@ -69,14 +69,16 @@ ReliefAsked = struct(
     [("uv", "vec2f"), ("duv", "vec2f"), ("h", "f32"), ("dh", "f32"), ("bend", "f32"), ("reach", "f32")]
 )
 
-# The plane that a relief lies on, world; and the light that a pass is about.
+# The plane that a relief lies on, world; and the light and the channels that a pass is about.
 ReliefPlane = struct(
     [
         ("origin", "vec3f"),  # of texture coordinates and heights
         ("light", "u32"),
         ("tangent", "vec3f"),
+        ("n_layer", "f32"),  # index of the translucent layer for these channels
         ("bitangent", "vec3f"),
         ("normal", "vec3f"),
+        ("channels", "vec3f"),  # 1 for those that count
     ]
 )
 

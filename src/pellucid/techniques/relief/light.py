@@ -23,7 +23,6 @@ MAP_FORMAT = "rgba16float"
 MAPPED_LIGHTS = 32  # bits of ReliefParams.mapped_lights
 FLATNESS = 1e-4  # of the size of a mesh, and of its normals
 GROUP = 8
-CAUSTIC_PASSES = ("caustic_refract", "caustic_splat", "caustic_resolve")
 
 
 def plane_of(hull: Hull, world_from_object: np.ndarray) -> np.ndarray | None:
@@ -146,7 +145,8 @@ class LightMaps:
         self._allocate((*texels, max(lights, 1), caustics))
         if state == self._state or not lights:
             return False
-        self._write_planes(plane, lights)
+        parts = _channels(params)
+        self._write_planes(plane, lights, parts)
         endless = params.copy()
         if params["tiling"]:
             # All tiles share one map: that of a tile in the midst of many.
@@ -160,9 +160,11 @@ class LightMaps:
             "caustic_beams": self._beams, "caustic_sums": self._sums, "caustic_map_out": self._caustic_view
         }  # fmt: skip
         for light in range(lights if caustics else 0):
-            for name in CAUSTIC_PASSES:
-                bound_here = {**bound, **own, "plane": self._planes[light]}
-                self.passes.run(name, constants, (width, height, 1), bound_here)
+            of_light = self._planes[light * len(parts) : (light + 1) * len(parts)]
+            for part in of_light:
+                for name in ("caustic_refract", "caustic_splat"):
+                    self.passes.run(name, constants, (width, height, 1), {**bound, **own, "plane": part})
+            self.passes.run("caustic_resolve", constants, (width, height, 1), {**bound, **own, "plane": of_light[0]})
         self._state = state
         self.runs += 1
         return True
@@ -199,10 +201,20 @@ class LightMaps:
         usage = ("sample", "storage")
         return self.passes.device.texture(size=size, format=MAP_FORMAT, layers=layers, usage=usage, label=label)
 
-    def _write_planes(self, plane: np.ndarray, lights: int) -> None:
-        while len(self._planes) < lights:
+    def _write_planes(self, plane: np.ndarray, lights: int, parts: list[tuple[float, tuple[float, ...]]]) -> None:
+        records = np.repeat(plane.reshape(1), lights * len(parts))
+        records["light"] = np.repeat(np.arange(lights), len(parts))
+        records["n_layer"] = np.tile([n for n, _ in parts], lights)
+        records["channels"] = np.tile([channels for _, channels in parts], (lights, 1))
+        while len(self._planes) < len(records):
             self._planes.append(self.passes.device.buffer(ReliefPlane.itemsize, "uniform", "relief plane"))
-        for light in range(lights):
-            record = plane.copy()
-            record["light"] = light
-            self.passes.device.write(self._planes[light], record.reshape(1))
+        for buffer, record in zip(self._planes, records, strict=False):
+            self.passes.device.write(buffer, record.reshape(1))
+
+
+def _channels(params: np.ndarray) -> list[tuple[float, tuple[float, ...]]]:
+    """(index, which of red, green and blue) of light that is refracted together."""
+    n = params["n_layer"]
+    if not params["dispersion"]:
+        return [(float(n[1]), (1.0, 1.0, 1.0))]
+    return [(float(n[k]), tuple(float(k == j) for j in range(3))) for k in range(3)]

@@ -27,7 +27,7 @@ fn beam_of(texel: vec2u) -> ReliefBeam {
     if facing <= 0.0 || rise <= 0.0 {
         return beam;
     }
-    let inside = refract(-lamp.to_ws, n_ws, relief.n_outside, relief.n_layer.g).direction;
+    let inside = refract(-lamp.to_ws, n_ws, relief.n_outside, plane.n_layer).direction;
     let ray = relief_ray(frame_at, uv, both.y, inside);
     let reach = relief_reach(ray);
     let t = light_crossing(ray, 0.0, reach, RELIEF_SOLID, false);
@@ -36,8 +36,8 @@ fn beam_of(texel: vec2u) -> ReliefBeam {
     }
     let seen = relief_shadow(relief_ray(frame_at, uv, both.y, lamp.to_ws), lamp.tan_radius, lamp.distance_m);
     let flux = seen * facing / (dot(n_ws, plane.normal) * rise);
-    let lost = fresnel_dielectric(facing, relief.n_outside, relief.n_layer.g);
-    beam.flux = flux * (1.0 - lost) * transmittance(relief.absorption, t);
+    let lost = fresnel_dielectric(facing, relief.n_outside, plane.n_layer);
+    beam.flux = plane.channels * flux * (1.0 - lost) * transmittance(relief.absorption, t);
     beam.kind = BEAM_LIT;
     beam.landed = vec2f(texel) + t * relief_walk(ray).step;
     return beam;

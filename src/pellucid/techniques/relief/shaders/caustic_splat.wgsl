@@ -3,7 +3,7 @@
 //!import techniques/relief/shaders/caustic_bindings
 
 const SPLAT_PER_TEXEL = 2.0;  // points along a side of the quadrangle
-const SPLAT_SIDE = 12.0;      // points, at most
+const SPLAT_SIDE = 32.0;      // points, at most
 const SPLAT_TORN = 24.0;      // texels: what lies farther apart was parted by an edge of the layers
 
 @compute @workgroup_size(8, 8)
