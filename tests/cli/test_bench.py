@@ -72,3 +72,17 @@ def test_the_light_suite_prints_its_rows(pellucid, monkeypatch):
     assert list(rows) == [suite.BASE, "floor", "view_clear_16", "view_scattering_16"]
     assert rows[suite.BASE]["ratio"] == 1.0 and all(row["ms"] > 0.0 for row in rows.values())
     assert "patches" in rows["floor"]["note"]
+
+
+def test_the_relief_suite_prints_its_rows(pellucid, monkeypatch):
+    """Two of its surfaces."""
+    suite = importlib.import_module("pellucid.benchmarks.relief")
+    rows = suite._rows()
+    assert {"base", "relief", "relief_thesis", "occlusion_hue", "occlusion_hue_thesis"} <= set(rows)
+    monkeypatch.setattr(suite, "_rows", lambda: {name: rows[name] for name in ("base", "lamp_moves")})
+    monkeypatch.setattr(suite, "SIZE", (32, 24))
+    said = pellucid("bench", "relief", "--json", "--repeat", "1")
+    assert said.code == 0, said.err
+    printed = {row["name"]: row for row in json.loads(said.out)["rows"]}
+    assert list(printed) == ["base", "lamp_moves"]
+    assert printed["base"]["ratio"] == 1.0 and printed["lamp_moves"]["ms"] > 0.0

@@ -10,5 +10,6 @@ from typing import Any
 
 from pellucid.benchmarks.eikonal import eikonal
 from pellucid.benchmarks.light import light
+from pellucid.benchmarks.relief import relief
 
-SUITES: dict[str, Callable[..., dict[str, Any]]] = {"eikonal": eikonal, "light": light}
+SUITES: dict[str, Callable[..., dict[str, Any]]] = {"eikonal": eikonal, "light": light, "relief": relief}
