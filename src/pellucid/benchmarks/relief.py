@@ -81,7 +81,8 @@ def _rows() -> dict[str, _Row]:
         rows[name] = _Row(bare("relief", quality=quality), f"solid layer: {note}")
     for shadows in ("hard", "soft", "horizon"):
         rows[f"shadows_{shadows}"] = _Row(
-            bare("best", quality=ReliefQuality(shadows=shadows)), "solid layer, a ray from every fragment to the lamp"
+            bare("best", quality=ReliefQuality(shadows=shadows, occlusion="none")),
+            "solid layer, a ray from every fragment to the lamp",
         )
     per_fragment = ReliefQuality(occlusion="fragment")
     rows["occlusion_fragment"] = _Row(covered("best", quality=per_fragment), "ours, worked out in every fragment")
@@ -125,7 +126,9 @@ def _pool(stones: Any) -> Any:
         place = ((0.37 * k) % 0.6 - 0.3, (0.23 * k) % 0.6 - 0.3)
         basin.drop(x_m=place[0], z_m=place[1], radius_m=0.01, strength_m=0.003, time_s=0.0)
     water = ReliefLayer(basin, base_m=0.01)
-    return _surface(stones, water)("best", quality=ReliefQuality(search="max_mip"), medium="water", tile_m=TILE_M)
+    return _surface(stones, water)(
+        "best", quality=ReliefQuality(search="max_mip", occlusion="fragment"), medium="water", tile_m=TILE_M
+    )
 
 
 def _scene() -> Scene:
