@@ -35,7 +35,7 @@ class LightQuality(Value):
 
     fluence_voxels: float = 1.0
     front_voxels: float = 1.0
-    split_voxels: float = 1.25
+    split_voxels: float = 1.0
     bounces: int = 32
     min_flux: float = 1e-3
     method: str = "flux"
