@@ -15,10 +15,9 @@ fn camera_is_orthographic() -> bool {
 fn camera_ray(pixel: vec2f) -> CameraRay {
     let ndc = 2.0 * (pixel + frame.jitter) / frame.size - 1.0;
     let across = ndc.x * frame.half_extent.x * frame.camera_right - ndc.y * frame.half_extent.y * frame.camera_up;
-    if camera_is_orthographic() {
-        return CameraRay(frame.camera_position + across, frame.camera_forward);
-    }
-    return CameraRay(frame.camera_position, normalize(frame.camera_forward + across));
+    let parallel = camera_is_orthographic();
+    let origin = frame.camera_position + select(vec3f(0.0), across, parallel);
+    return CameraRay(origin, normalize(frame.camera_forward + select(across, vec3f(0.0), parallel)));
 }
 
 // Value of the depth buffer at a point: near / depth, or linear from 1 (near) to 0 (far) when orthographic
@@ -32,10 +31,7 @@ fn view_depth_m(depth: f32) -> f32 {
     if depth <= 0.0 {
         return 1e30;
     }
-    if camera_is_orthographic() {
-        return frame.far_m - depth * (frame.far_m - frame.near_m);
-    }
-    return frame.near_m / depth;
+    return select(frame.near_m / depth, frame.far_m - depth * (frame.far_m - frame.near_m), camera_is_orthographic());
 }
 
 // World-space point at a view depth (metres) behind a point of the picture
@@ -46,8 +42,5 @@ fn point_at(pixel: vec2f, view_depth_m: f32) -> vec3f {
 
 // Width in metres of what one pixel covers at a point
 fn footprint_m(p_ws: vec3f) -> f32 {
-    if camera_is_orthographic() {
-        return frame.pixel_footprint;
-    }
-    return frame.pixel_footprint * distance(p_ws, frame.camera_position);
+    return frame.pixel_footprint * select(distance(p_ws, frame.camera_position), 1.0, camera_is_orthographic());
 }

@@ -5,7 +5,7 @@
 // Irradiance on a surface element, environment (unoccluded) and lamps (with their shadows)
 fn surface_irradiance(p_ws: vec3f, n_ws: vec3f) -> vec3f {
     var irradiance = environment_irradiance(n_ws);
-    for (var light = 0u; light < frame.light_count; light++) {
+    for (var light = 0u; light < light_count(); light++) {
         let samples = light_sample_count(light);
         for (var k = 0u; k < samples; k++) {
             let sample = sample_light(light, k, p_ws, n_ws);

@@ -12,6 +12,12 @@ struct LightSample {
     irradiance: vec3f,  // on a surface that faces the light; zero in its shadow
 }
 
+// Not the uniform alone: the software driver builds a shader anew, at every dispatch, for the values of uniforms that conditions
+// depend on and nothing else.
+fn light_count() -> u32 {
+    return min(frame.light_count, arrayLength(&lights));
+}
+
 fn light_sample_count(light: u32) -> u32 {
     return select(1u, AREA_STRATA * AREA_STRATA, lights[light].kind == LIGHT_AREA);
 }

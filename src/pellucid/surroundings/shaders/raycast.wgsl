@@ -11,6 +11,12 @@ struct SurfaceHit {
     barycentric: vec2f,  // weights of the second and third corner
 }
 
+// No triangles: the root is no leaf, and yet its second child would be itself. Asked of the nodes, for the reason of light_count in
+// lights.wgsl.
+fn bvh_is_empty() -> bool {
+    return bvh_nodes[0].link == 0u && bvh_nodes[0].count == 0u;
+}
+
 // Nearest opaque surface with 0 < t < t_max that can be seen
 fn trace_opaque(origin_ws: vec3f, direction_ws: vec3f, t_max: f32) -> SurfaceHit {
     return nearest_surface(origin_ws, direction_ws, t_max, true);
@@ -19,7 +25,7 @@ fn trace_opaque(origin_ws: vec3f, direction_ws: vec3f, t_max: f32) -> SurfaceHit
 // Nearest opaque surface with 0 < t < t_max; `cull` lets a ray pass the back of what is single-sided, as light does not
 fn nearest_surface(origin_ws: vec3f, direction_ws: vec3f, t_max: f32, cull: bool) -> SurfaceHit {
     var hit = SurfaceHit(t_max, false, 0u, vec2f(0.0));
-    if frame.triangle_count == 0u {
+    if bvh_is_empty() {
         return hit;
     }
     let inverse = bvh_inverse(direction_ws);
@@ -62,7 +68,7 @@ fn nearest_surface(origin_ws: vec3f, direction_ws: vec3f, t_max: f32, cull: bool
 
 // Whether any opaque surface, from either side, lies at 0 < t < t_max
 fn occluded(origin_ws: vec3f, direction_ws: vec3f, t_max: f32) -> bool {
-    if frame.triangle_count == 0u {
+    if bvh_is_empty() {
         return false;
     }
     let inverse = bvh_inverse(direction_ws);

@@ -28,7 +28,7 @@ fn shade_surface(surface: SurfacePoint, triangle: u32, view_ws: vec3f) -> vec3f 
     }
     var direct = DirectLight(vec3f(0.0), vec3f(0.0));
     let n_face = face_normal(triangle, view_ws);
-    for (var light = 0u; light < frame.light_count; light++) {
+    for (var light = 0u; light < light_count(); light++) {
         let samples = light_sample_count(light);
         for (var k = 0u; k < samples; k++) {
             let sample = sample_light(light, k, p_ws, n_ws);

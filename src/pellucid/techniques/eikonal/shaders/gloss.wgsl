@@ -41,7 +41,7 @@ fn lobe_value(lobe: Lobe, l: vec3f) -> vec3f {
 // Radiance that lamps send into the viewer's direction by the lobe
 fn lamps_in_lobe(lobe: Lobe, p_ws: vec3f) -> vec3f {
     var radiance = vec3f(0.0);
-    for (var light = 0u; light < frame.light_count; light++) {
+    for (var light = 0u; light < light_count(); light++) {
         let wide = lights[light].kind == LIGHT_AREA;
         let samples = light_sample_count(light);
         for (var k = 0u; k < samples; k++) {

@@ -9,7 +9,7 @@ fn relief_glints(p_ws: vec3f, n_ws: vec3f, view_ws: vec3f) -> vec3f {
     let alpha = max(relief.translucent_roughness * relief.translucent_roughness, SHADE_MIN_ALPHA);
     let n_dot_v = clamp(dot(n_ws, view_ws), 1e-4, 1.0);
     var radiance = vec3f(0.0);
-    for (var light = 0u; light < frame.light_count; light++) {
+    for (var light = 0u; light < light_count(); light++) {
         for (var k = 0u; k < light_sample_count(light); k++) {
             let sample = sample_light(light, k, p_ws, n_ws);
             let n_dot_l = dot(n_ws, sample.direction);

@@ -44,7 +44,7 @@ fn relief_solid_radiance(point: ReliefPoint, view_ws: vec3f, footprint: f32, is_
         radiance += specular * environment_glossy(reflect(-view_ws, n_ws), alpha);
     }
     let diffuse = (1.0 - specular) * color * again / GGX_PI;
-    for (var light = 0u; light < frame.light_count; light++) {
+    for (var light = 0u; light < light_count(); light++) {
         let share = relief_light_share(point, light);
         var open = vec3f(0.0);
         for (var k = 0u; k < light_sample_count(light); k++) {
