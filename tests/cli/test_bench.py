@@ -63,7 +63,7 @@ def test_the_light_suite_prints_its_rows(pellucid, monkeypatch):
         suite.BASE: suite._Job(lambda: suite._ball(16), "small"),
         "floor": suite._Job(lambda: suite._ball(12), "", floor=True),
     }
-    monkeypatch.setattr(suite, "_jobs", lambda most_bytes: jobs)
+    monkeypatch.setattr(suite, "_jobs", lambda: jobs)
     monkeypatch.setattr(suite, "RESOLUTION", 16)
     monkeypatch.setattr(suite, "SIZE", (48, 36))
     said = pellucid("bench", "light", "--json", "--repeat", "1")

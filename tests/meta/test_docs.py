@@ -66,6 +66,18 @@ def test_the_example_of_the_page_on_light_runs(capsys: pytest.CaptureFixture[str
     assert capsys.readouterr().out.startswith("brightest at")
 
 
+def test_the_example_of_the_page_on_reliefs_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    small = (ROOT / "docs" / "relief.md").read_text("utf-8").split("```python\n")[1].split("```")[0]
+    for written, tried in (("size=(800, 600)", "size=(48, 36)"), ("samples=4", "samples=1"), ("=256", "=64")):
+        assert written in small
+        small = small.replace(written, tried)
+    monkeypatch.chdir(tmp_path)
+    values: dict[str, Any] = {}
+    exec(compile(small, "relief.md", "exec"), values)
+    assert [p.name for p in tmp_path.iterdir()] == ["puddles.png"]
+    assert values["frame"].depth.max() < 4.0 and values["frame"].radiance.std() > 0.01
+
+
 @pytest.mark.parametrize("page", PAGES, ids=name)
 def test_links_lead_somewhere(page: Path) -> None:
     links = [link for link in LINK.findall(page.read_text(encoding="utf-8")) if "://" not in link]
