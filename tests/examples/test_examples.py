@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import inspect
+from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -93,3 +94,10 @@ def test_dispersion_colours_white_bars(tmp_path: Path) -> None:
         return float(np.ptp(middle, axis=2).mean() / middle.mean())
 
     assert colour(coloured) > 3.0 * colour(plain)
+
+
+def test_rings_spread_on_water(tmp_path: Path) -> None:
+    frames = run(9, tmp_path, samples=1)
+    assert len(list(tmp_path.glob("rings_*.png"))) == len(frames) == 6
+    assert all(np.isfinite(f.radiance).all() for f in frames)
+    assert all(not np.array_equal(a.radiance, b.radiance) for a, b in pairwise(frames))

@@ -1,6 +1,6 @@
 """Pictures that show what the renderer does; `pellucid demo` and `pellucid gallery` render them."""
 
-from . import amber, company, crystals, glow, light, solids, table
+from . import amber, company, crystals, glow, light, relief, relief_layers, solids, table
 from .picture import Picture
 
 #: All pictures, in the order in which they are shown.
@@ -12,6 +12,8 @@ PICTURES: tuple[Picture, ...] = (
     *crystals.PICTURES,
     *glow.PICTURES,
     *company.PICTURES,
+    *relief.PICTURES,
+    *relief_layers.PICTURES,
 )
 
 __all__ = ["PICTURES", "Picture"]
