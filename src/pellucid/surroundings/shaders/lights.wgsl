@@ -23,11 +23,10 @@ fn light_sample_count(light: u32) -> u32 {
 }
 
 fn sample_light(light: u32, index: u32, p_ws: vec3f, n_ws: vec3f) -> LightSample {
-    switch lights[light].kind {
-        case LIGHT_POINT: { return sample_point_light(light, p_ws, n_ws); }
-        case LIGHT_AREA: { return sample_area_light(light, index, p_ws, n_ws); }
-        default: { return sample_directional_light(light, p_ws, n_ws); }
+    if lights[light].kind == LIGHT_DIRECTIONAL {
+        return sample_directional_light(light, p_ws, n_ws);
     }
+    return sample_near_light(light, index, p_ws, n_ws);
 }
 
 fn sample_directional_light(light: u32, p_ws: vec3f, n_ws: vec3f) -> LightSample {
@@ -38,29 +37,21 @@ fn sample_directional_light(light: u32, p_ws: vec3f, n_ws: vec3f) -> LightSample
     return LightSample(direction, lights[light].power * shadow_visibility(light, p_ws, n_ws));
 }
 
-// Inverse square law: irradiance = intensity / distance^2
-fn sample_point_light(light: u32, p_ws: vec3f, n_ws: vec3f) -> LightSample {
-    let to_light = lights[light].position - p_ws;
-    let d2 = max(dot(to_light, to_light), 1e-12);
-    let direction = to_light * inverseSqrt(d2);
-    let seen = light_reaches(light, p_ws, n_ws, direction, sqrt(d2));
-    return LightSample(direction, lights[light].power * select(0.0, 1.0 / d2, seen));
-}
-
-// One stratum of a one-sided rectangle: irradiance = radiance cos(theta) area / distance^2 / samples
-fn sample_area_light(light: u32, index: u32, p_ws: vec3f, n_ws: vec3f) -> LightSample {
+// A point: irradiance = intensity / distance^2. Or one stratum of a one-sided rectangle: irradiance = radiance
+// cos(theta) area / distance^2 / samples. One ray serves both: a software driver would send both.
+fn sample_near_light(light: u32, index: u32, p_ws: vec3f, n_ws: vec3f) -> LightSample {
+    let is_area = lights[light].kind == LIGHT_AREA;
     let cell = vec2f(f32(index % AREA_STRATA), f32(index / AREA_STRATA));
     let st = (cell + light_jitter(p_ws, index + 31u * light)) / f32(AREA_STRATA) - 0.5;
-    let target_ws = lights[light].position + st.x * lights[light].edge_u + st.y * lights[light].edge_v;
-    let to_light = target_ws - p_ws;
+    let aside = st.x * lights[light].edge_u + st.y * lights[light].edge_v;
+    let to_light = lights[light].position + select(vec3f(0.0), aside, is_area) - p_ws;
     let d2 = max(dot(to_light, to_light), 1e-12);
     let direction = to_light * inverseSqrt(d2);
     let cosine = -dot(direction, lights[light].direction);
-    if cosine <= 0.0 || !light_reaches(light, p_ws, n_ws, direction, sqrt(d2)) {
-        return LightSample(direction, vec3f(0.0));
-    }
-    let area = length(cross(lights[light].edge_u, lights[light].edge_v));
-    return LightSample(direction, lights[light].power * (cosine * area / (d2 * f32(AREA_STRATA * AREA_STRATA))));
+    let area = length(cross(lights[light].edge_u, lights[light].edge_v)) / f32(AREA_STRATA * AREA_STRATA);
+    let strength = select(1.0, cosine * area, is_area) / d2;
+    let seen = strength > 0.0 && light_reaches(light, p_ws, n_ws, direction, sqrt(d2));
+    return LightSample(direction, lights[light].power * select(0.0, strength, seen));
 }
 
 fn light_reaches(light: u32, p_ws: vec3f, n_ws: vec3f, direction: vec3f, distance_m: f32) -> bool {
