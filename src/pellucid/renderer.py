@@ -140,13 +140,17 @@ class Renderer:
             self._display = self.device.texture(size=size, format="rgba8unorm", usage=usage, label="display")
 
     def _prepare(self, scene: Scene, size: tuple[int, int]) -> None:
-        self.surroundings.prepare(scene, size)
+        items = {kind: [o for o in scene.objects if type(o) is kind] for kind in TECHNIQUES}
         for kind in TECHNIQUES:
-            items = [o for o in scene.objects if type(o) is kind]
-            if items and kind not in self._techniques:
+            if items[kind] and kind not in self._techniques:
                 self._techniques[kind] = TECHNIQUES[kind](self.device)
-            if kind in self._techniques:
-                self._techniques[kind].prepare(items, self.surroundings)
+        drawn = [(self._techniques[kind], items[kind]) for kind in TECHNIQUES if kind in self._techniques]
+        stand_ins = [
+            mesh for technique, own in drawn if hasattr(technique, "stand_ins") for mesh in technique.stand_ins(own)
+        ]
+        self.surroundings.prepare(scene, size, stand_ins)
+        for technique, own in drawn:
+            technique.prepare(own, self.surroundings)
 
     def _simulate(self, time: float) -> None:
         """Move what moves by itself to a time."""

@@ -70,7 +70,10 @@ class CausticMaps:
 
     def drop(self) -> None:
         """Forget the maps: meshes are drawn as if no refractive matter were there."""
+        blank = self.charts is None and "caustic_charts" in self._resources
         self.active, self.charts, self._made_for, self._landing = False, None, (), {}
+        if blank:
+            return
         empty = np.zeros((1, 1, 4), np.float32)
         for kind in KINDS:
             self._resources[f"{kind}_map"] = self.device.texture(empty, format="rgba16float", label=f"no {kind} map")

@@ -7,6 +7,7 @@ from pellucid.gpu.layout import struct
 FLAG_ORTHOGRAPHIC = 1
 
 MATERIAL_SINGLE_SIDED = 1
+MATERIAL_UNSEEN = 2  # rays and lamps meet it, the picture does not show it
 MATERIAL_CASTS_SHADOW = 16  # shifted left by the layer of the shadow map
 
 LIGHT_DIRECTIONAL = 0

@@ -10,7 +10,7 @@ import numpy as np
 from pellucid.surroundings import environment, geometry, lights, maps
 from pellucid.surroundings.camera import write_camera
 from pellucid.surroundings.caustics import CausticMaps
-from pellucid.surroundings.layouts import MATERIAL_CASTS_SHADOW, FrameParams
+from pellucid.surroundings.layouts import MATERIAL_CASTS_SHADOW, MATERIAL_UNSEEN, FrameParams
 
 if TYPE_CHECKING:
     from pellucid.gpu import Device
@@ -57,6 +57,7 @@ class Surroundings:
         self._geometry = geometry.gather(())
         self._layers: list[int] = []
         self._map_size = 1
+        self._shown = 0
         self._casters: list[list[bool]] = []
         self.caustics = CausticMaps(device, self._resources)
 
@@ -90,16 +91,18 @@ class Surroundings:
         """The frame parameters as last uploaded, a copy."""
         return self._frame.copy()
 
-    def prepare(self, scene: Scene, size: tuple[int, int]) -> None:
+    def prepare(self, scene: Scene, size: tuple[int, int], stand_ins: Sequence[Mesh] = ()) -> None:
         """Upload what differs from the last call; the parts of a scene are told apart by identity.
 
         Parameters
         ----------
         scene : the scene. size : (width, height) of the picture in pixels.
+        stand_ins : meshes that rays and lamps meet, but the picture does not show, since a technique draws better.
         """
         from pellucid.scene import Mesh
 
-        meshes = [o for o in scene.objects if isinstance(o, Mesh)]
+        meshes = [o for o in scene.objects if isinstance(o, Mesh)] + list(stand_ins)
+        self._shown = len(meshes) - len(stand_ins)
         try:
             moved = self._prepare_geometry(meshes)
             self._prepare_maps(meshes)
@@ -173,11 +176,12 @@ class Surroundings:
         return True
 
     def _prepare_materials(self, meshes: Sequence[Mesh], relit: bool) -> None:
-        if not self._changed("materials", list(meshes)) and not relit:
+        if not self._changed("materials", [*meshes, self._shown]) and not relit:
             return
         records = geometry.materials(meshes, self._geometry, self._layers, self._map_size)
         for layer, casts in enumerate(self._casters):
             records["flags"][: len(casts)] |= np.uint32(MATERIAL_CASTS_SHADOW << layer) * np.array(casts)
+        records["flags"][self._shown : len(meshes)] |= MATERIAL_UNSEEN
         self._store("materials", records)
 
     def _prepare_shadows(self, layers: int) -> None:

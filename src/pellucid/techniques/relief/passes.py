@@ -20,9 +20,10 @@ from pellucid.techniques.relief.layouts import ReliefParams
 from pellucid.techniques.relief.light import LightMaps, LightPasses, light_constants, mapped_lights, plane_of
 from pellucid.techniques.relief.prepare import MARGIN, Maps, hull, maps
 from pellucid.techniques.relief.search_maps import search_bindings
+from pellucid.techniques.relief.stand_in import stand_in
 
 if TYPE_CHECKING:
-    from pellucid.scene import Camera, ReliefLayer, ReliefSurface
+    from pellucid.scene import Camera, Mesh, ReliefLayer, ReliefSurface
     from pellucid.surroundings import Surroundings
 
 HIT_FORMAT = "rgba32uint"
@@ -106,6 +107,7 @@ class ReliefTechnique:
         self._nothing = _absent(device)
         self._light_passes = LightPasses(device)
         self._light_maps: list[LightMaps] = []
+        self._stand_ins: list[tuple[ReliefSurface, Mesh]] = []
 
     @property
     def nbytes(self) -> int:
@@ -121,6 +123,12 @@ class ReliefTechnique:
         for body in self.bodies:
             write_parameters(body)
             self.device.write(body.bindings["relief"], body.params.reshape(1))
+
+    def stand_ins(self, items: Sequence[ReliefSurface]) -> list[Mesh]:
+        """What rays and shadow maps of others see of the surfaces; the same meshes until one of them changes."""
+        kept = {_stand_in_key(item): mesh for item, mesh in self._stand_ins}
+        self._stand_ins = [(item, kept.get(_stand_in_key(item)) or stand_in(item)) for item in items]
+        return [mesh for _, mesh in self._stand_ins]
 
     def simulate(self, time_s: float) -> None:
         """Move the heights of layers that do to a time, and all that depends on them."""
@@ -352,6 +360,11 @@ def _moves(item: ReliefSurface) -> bool:
 def _geometry_key(item: ReliefSurface) -> list[Any]:
     mesh = item.mesh
     return [mesh.vertices, mesh.faces, mesh.normals, mesh.uvs, item.tiles, item.tile_m, item.scale]
+
+
+def _stand_in_key(item: ReliefSurface) -> tuple[Any, ...]:
+    where = (item.tiles, item.tile_m, item.position, item.rotation, item.scale)
+    return (id(item.mesh), id(item.solid), *where)
 
 
 def _maps_key(item: ReliefSurface, tile_m: tuple[float, float]) -> list[Any]:

@@ -40,14 +40,21 @@ class Maps:
 
 def hull(item: ReliefSurface) -> Hull:
     """The hull of a surface in its own coordinates, scaled, so that lengths are metres of the world."""
+    vertices, faces, normals, uvs = _geometry(item)
+    return hull_of(vertices, faces, normals, uvs * tiles_of(item))
+
+
+def tiles_of(item: ReliefSurface) -> np.ndarray:
+    """Tiles along u and v for each unit of the mesh's texture coordinates, (2,)."""
+    if item.tile_m is None:
+        return np.asarray(item.tiles, np.float64)
+    return np.asarray(hull_of(*_geometry(item)).tile_m) / np.asarray(item.tile_m)
+
+
+def _geometry(item: ReliefSurface) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     mesh = item.mesh
     vertices = item.scale * np.asarray(mesh.vertices, np.float64)
-    faces, normals = np.asarray(mesh.faces), np.asarray(mesh.normals, np.float64)
-    uvs = np.asarray(mesh.uvs, np.float64)
-    tiles = np.asarray(item.tiles, np.float64)
-    if item.tile_m is not None:
-        tiles = np.asarray(hull_of(vertices, faces, normals, uvs).tile_m) / np.asarray(item.tile_m)
-    return hull_of(vertices, faces, normals, uvs * tiles)
+    return vertices, np.asarray(mesh.faces), np.asarray(mesh.normals, np.float64), np.asarray(mesh.uvs, np.float64)
 
 
 def maps(

@@ -2,6 +2,8 @@
 //!import surroundings/shaders/camera
 //!import surroundings/shaders/surface
 
+const MATERIAL_UNSEEN = 2u;  // layouts.MATERIAL_UNSEEN
+
 struct VisibilityVarying {
     @builtin(position) clip: vec4f,
     @location(0) @interpolate(flat) triangle: u32,
@@ -10,7 +12,8 @@ struct VisibilityVarying {
 @vertex
 fn vs_main(@builtin(vertex_index) vertex: u32) -> VisibilityVarying {
     let triangle = vertex / 3u;
-    if bvh_triangles[triangle].single_sided != 0u && !faces_camera(triangle) {
+    let unseen = (materials[bvh_triangles[triangle].material].flags & MATERIAL_UNSEEN) != 0u;
+    if unseen || (bvh_triangles[triangle].single_sided != 0u && !faces_camera(triangle)) {
         return VisibilityVarying(vec4f(2.0, 2.0, 2.0, 1.0), triangle);  // clipped
     }
     let p_ws = triangle_corner(triangle, vertex % 3u);
