@@ -255,6 +255,6 @@ PICTURES = (
         "Watch under glass",
         "Gilt numerals and hands stand out of a blue dial under a domed glass; lamps are mirrored in the glass.",
         watch,
-        3,
+        2,
     ),
 )
