@@ -91,6 +91,11 @@ class Surroundings:
         """The frame parameters as last uploaded, a copy."""
         return self._frame.copy()
 
+    @property
+    def shown_meshes(self) -> int:
+        """How many meshes the picture shows: those of the scene, without stand-ins."""
+        return self._shown
+
     def prepare(self, scene: Scene, size: tuple[int, int], stand_ins: Sequence[Mesh] = ()) -> None:
         """Upload what differs from the last call; the parts of a scene are told apart by identity.
 

@@ -203,7 +203,7 @@ class ReliefTechnique:
                 timer=timer,
                 label="relief search",
             )
-            rays = body.quality.environment == "rays" and surroundings.triangle_count > 0
+            rays = body.quality.environment == "rays" and self._meets_meshes(body, surroundings)
             constants = {**body.constants, **surroundings.shading_constants, "RELIEF_RAYS": float(rays)}
             self._pass("compose", constants).run(
                 encoder,
@@ -212,6 +212,12 @@ class ReliefTechnique:
                 timer=timer,
                 label="relief shade",
             )
+
+    def _meets_meshes(self, body: Body, surroundings: Surroundings) -> bool:
+        """Whether rays that leave a surface can meet any: one that lies in a plane does not meet what stands for it."""
+        if len(self.bodies) == 1 and surroundings.shown_meshes == 0:
+            return plane_of(body.hull, body.params["world_from_object"].T) is None
+        return surroundings.triangle_count > 0
 
     def _look_around(self, encoder: Any, number: int, body: Body, surroundings: Surroundings, timer: Any) -> None:
         """Draw the cube of a body, if it has none where it stands, or wants one for every picture."""
