@@ -46,7 +46,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     // What a surface stretches is divided before it: there a bundle is still straight, and its children meet the true surface.
     let stretched = edges_behind();
     let stretches = !widens && end_event[0] == INTERFACE && tube.is_ray == 0u && worth_stretching(flux)
-        && too_wide(max(stretched.x, stretched.y), fans_out || normals_differ());
+        && too_wide(max(stretched.x, stretched.y) / STRETCHED, fans_out || normals_differ());
     if (stretches) { part = before_surface(); }
     var at = array<vec3f, 4>();
     for (var k = 0u; k < 4u; k++) { at[k] = mix(corner_x[k], end_x[k], part[k]); }
@@ -94,6 +94,7 @@ fn edges_behind() -> vec2f {
     return cut_edges(end_x, normalize(select(through, back, first.total || last.total)));
 }
 
+const STRETCHED = 1.25;       // as wide as the rectangle of light_travel.wgsl can be, of the width that patches else may have
 const BEFORE_SURFACE = 0.25;   // voxels
 
 // Shares of the ways of all corners up to one front a little before the surface.
