@@ -38,6 +38,7 @@ class ReliefQuality(Value):
         were flat, with ``"search"`` the relief itself.
     shadows : of the solid layer on itself: ``"hard"`` for a ray to the middle of each lamp, ``"soft"`` for the share
         of the lamp's disc that is seen, ``"horizon"`` for the same from a map made beforehand.
+        Where `occlusion` is on, ``"none"`` counts as ``"hard"``: light that the solid layer stops reaches nothing.
     shadow_steps : steps of a ray towards a lamp where `search` is linear, 1 to 256.
     occlusion : what the translucent layer takes from light on its way to the solid one, beyond what lies right above
         each point: nothing, worked out in every ``"fragment"``, or, shadows included, once a light has moved in a
