@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import importlib
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -63,6 +64,12 @@ def source(name: str, root: Path = ROOT) -> ModuleSource:
     _include(root, name, ("", 0), set(), text, lines)
     joined = "\n".join(text) + "\n"
     return ModuleSource(name, joined, tuple(lines), _used_bindings(joined))
+
+
+def declared(module: str, constants: Mapping[str, float]) -> dict[str, float]:
+    """Of override constants those that a module declares: a pipeline takes no others."""
+    text = source(module).text
+    return {name: value for name, value in constants.items() if f"override {name}:" in text}
 
 
 def _include(

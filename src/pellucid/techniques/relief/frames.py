@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from pellucid.techniques.relief.layouts import ReliefVertex
 
+FLATNESS = 1e-4  # of the size of a mesh, and of its normals
 BORDER_SLACK = 1e-4  # of the extent of the texture coordinates
 
 
@@ -26,6 +28,24 @@ class Hull:
     tile_m: tuple[float, float]
     clip_low: tuple[float, float]
     clip_high: tuple[float, float]
+
+    @cached_property
+    def plane(self) -> dict[str, np.ndarray] | None:
+        """Origin, tangent, bitangent and unit normal of the plane with one frame that the mesh lies on, (3,) metres.
+
+        None for a mesh that is curved, or whose texture is stretched unevenly.
+        """
+        vertices = self.vertices[self.vertices["wall"] < 0.5]
+        frame = {name: vertices[name].astype(np.float64) for name in ("position", "normal", "tangent", "bitangent")}
+        mean = {name: values.mean(axis=0) for name, values in frame.items()}
+        offset = vertices["u"][:, None] * mean["tangent"] + vertices["v"][:, None] * mean["bitangent"]
+        origins = frame["position"] - offset
+        size = max(float(np.ptp(frame["position"], axis=0).max()), 1e-12)
+        turned = float(np.abs(frame["normal"] - mean["normal"]).max())
+        if np.abs(origins - origins.mean(axis=0)).max() > FLATNESS * size or turned > FLATNESS:
+            return None
+        normal = mean["normal"] / np.linalg.norm(mean["normal"])
+        return {"origin": origins.mean(axis=0), **{k: mean[k] for k in ("tangent", "bitangent")}, "normal": normal}
 
 
 def hull_of(vertices: np.ndarray, faces: np.ndarray, normals: np.ndarray, uvs: np.ndarray) -> Hull:

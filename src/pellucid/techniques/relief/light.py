@@ -9,7 +9,7 @@ import numpy as np
 
 from pellucid.fields.horizon import horizon_map
 from pellucid.gpu.kernel import ComputeKernel
-from pellucid.gpu.modules import source
+from pellucid.gpu.modules import declared
 from pellucid.scene import DirectionalLight
 from pellucid.scene.relief_quality import SHADOWS, ReliefQuality
 from pellucid.techniques.relief.layouts import ReliefBeam, ReliefParams, ReliefPlane
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 SHADERS = "techniques/relief/shaders/"
 MAP_FORMAT = "rgba16float"
 MAPPED_LIGHTS = 32  # bits of ReliefParams.mapped_lights
-FLATNESS = 1e-4  # of the size of a mesh, and of its normals
 GROUP = 8
 
 
@@ -36,19 +35,13 @@ def plane_of(hull: Hull, world_from_object: np.ndarray) -> np.ndarray | None:
     -------
     () record of `layouts.ReliefPlane`, world; None for a mesh that is curved, or whose texture is stretched unevenly.
     """
-    vertices = hull.vertices[hull.vertices["wall"] < 0.5]
-    frame = {name: vertices[name].astype(np.float64) for name in ("position", "normal", "tangent", "bitangent")}
-    mean = {name: values.mean(axis=0) for name, values in frame.items()}
-    offset = vertices["u"][:, None] * mean["tangent"] + vertices["v"][:, None] * mean["bitangent"]
-    origins = frame["position"] - offset
-    size = max(float(np.ptp(frame["position"], axis=0).max()), 1e-12)
-    turned = float(np.abs(frame["normal"] - mean["normal"]).max())
-    if np.abs(origins - origins.mean(axis=0)).max() > FLATNESS * size or turned > FLATNESS:
+    own = hull.plane
+    if own is None:
         return None
     plane, world = np.zeros((), ReliefPlane), np.asarray(world_from_object, np.float64)
-    plane["origin"] = world[:3, :3] @ origins.mean(axis=0) + world[:3, 3]
-    plane["tangent"], plane["bitangent"] = world[:3, :3] @ mean["tangent"], world[:3, :3] @ mean["bitangent"]
-    plane["normal"] = world[:3, :3] @ (mean["normal"] / np.linalg.norm(mean["normal"]))
+    plane["origin"] = world[:3, :3] @ own["origin"] + world[:3, 3]
+    for name in ("tangent", "bitangent", "normal"):
+        plane[name] = world[:3, :3] @ own[name]
     return plane
 
 
@@ -91,7 +84,7 @@ class LightPasses:
     def run(self, name: str, constants: Mapping[str, float], groups: tuple[int, int, int], bound: Any) -> None:
         """Run the kernel of a file; constants that it does not declare are left out."""
         module = SHADERS + name
-        used = {key: value for key, value in constants.items() if f"override {key}:" in source(module).text}
+        used = declared(module, constants)
         key = (name, *used.items())
         if key not in self._kernels:
             self._kernels[key] = ComputeKernel(self.device, module, constants=used, nearest=("height_bounds",))

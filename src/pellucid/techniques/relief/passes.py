@@ -9,28 +9,33 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellucid.gpu import Device, RenderPass
-from pellucid.gpu.modules import source
+from pellucid.gpu.modules import declared
 from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT, Targets
 from pellucid.scene.placement import placement_matrix
-from pellucid.scene.relief_quality import SEARCHES, STEPS, ReliefQuality, quality_of
+from pellucid.scene.relief_quality import REFLECTIONS, REFRACTIONS, SEARCHES, STEPS, ReliefQuality, quality_of
 from pellucid.techniques.relief.cube import SceneCube
 from pellucid.techniques.relief.diffuse import diffuse_tables
 from pellucid.techniques.relief.frames import Hull
 from pellucid.techniques.relief.layouts import ReliefParams
 from pellucid.techniques.relief.light import LightMaps, LightPasses, light_constants, mapped_lights, plane_of
-from pellucid.techniques.relief.prepare import MARGIN, Maps, hull, maps
+from pellucid.techniques.relief.prepare import (
+    MARGIN,
+    SOLID_ROUGHNESS,
+    TRANSLUCENT_ROUGHNESS,
+    Maps,
+    hull,
+    maps,
+    roughness_of,
+)
 from pellucid.techniques.relief.search_maps import search_bindings
 from pellucid.techniques.relief.stand_in import stand_in
 
 if TYPE_CHECKING:
-    from pellucid.scene import Camera, Mesh, ReliefLayer, ReliefSurface
+    from pellucid.scene import Camera, Mesh, ReliefSurface
     from pellucid.surroundings import Surroundings
 
 HIT_FORMAT = "rgba32uint"
 DEPTHS = {"color": 0, "normal": 0, "offset": 1}  # of RELIEF_DEPTH; 2 for all others
-SOLID_ROUGHNESS, TRANSLUCENT_ROUGHNESS = 0.6, 0.05  # unless the layer says
-REFRACTIONS = ("search", "plane")
-REFLECTIONS = ("environment", "plane", "search")
 
 
 @dataclass
@@ -216,7 +221,7 @@ class ReliefTechnique:
     def _meets_meshes(self, body: Body, surroundings: Surroundings) -> bool:
         """Whether rays that leave a surface can meet any: one that lies in a plane does not meet what stands for it."""
         if len(self.bodies) == 1 and surroundings.shown_meshes == 0:
-            return plane_of(body.hull, body.params["world_from_object"].T) is None
+            return body.hull.plane is None
         return surroundings.triangle_count > 0
 
     def _look_around(self, encoder: Any, number: int, body: Body, surroundings: Surroundings, timer: Any) -> None:
@@ -285,8 +290,7 @@ class ReliefTechnique:
 
     def _pass(self, name: str, constants: dict[str, float]) -> RenderPass:
         module = f"techniques/relief/shaders/{name}"
-        text = source(module).text
-        used = {key: value for key, value in constants.items() if f"override {key}:" in text}
+        used = declared(module, constants)
         key = (name, *used.items())
         if key not in self._passes:
             options: dict[str, Any] = {"targets": (COLOR_FORMAT,)}
@@ -331,8 +335,8 @@ def write_parameters(body: Body) -> None:
     p["absorption"] = absorption if quality.hue else absorption.mean()
     p["scattering"] = item.scattering
     p["specular_factor"] = 1.0 if item.specular_factor is None else item.specular_factor
-    p["solid_roughness"], p["solid_specular"] = _roughness(item.solid, SOLID_ROUGHNESS), item.solid.specular
-    p["translucent_roughness"] = _roughness(item.translucent, TRANSLUCENT_ROUGHNESS)
+    p["solid_roughness"], p["solid_specular"] = roughness_of(item.solid, SOLID_ROUGHNESS), item.solid.specular
+    p["translucent_roughness"] = roughness_of(item.translucent, TRANSLUCENT_ROUGHNESS)
     p["linear_steps"], p["binary_steps"] = quality.linear_steps, quality.binary_steps
     p["linear_approximation"] = quality.linear_approximation
     p["refraction_linear"], p["refraction_binary"] = quality.refraction_steps
@@ -343,10 +347,6 @@ def write_parameters(body: Body) -> None:
     p["color"] = (1.0, 1.0, 1.0) if isinstance(item.solid.colors, np.ndarray) else item.solid.colors
     p["color_texels"] = max(body.maps.colors[0].shape[:2])
     p["diffuse_down"], p["diffuse_back"] = diffuse_tables(item.ambient_n, (float(n[0]), float(n[1]), float(n[2])))
-
-
-def _roughness(layer: ReliefLayer | None, unless_given: float) -> float:
-    return unless_given if layer is None or layer.roughness is None else layer.roughness
 
 
 def _hull_range(body: Body, low: float, high: float, upper: float) -> tuple[float, float]:

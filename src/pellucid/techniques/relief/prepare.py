@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from pellucid.scene import ReliefLayer, ReliefSurface
 
 MARGIN = 1e-3  # of the range of heights, by which the hull lies outside of them
+SOLID_ROUGHNESS, TRANSLUCENT_ROUGHNESS = 0.6, 0.05  # unless the layer says
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,11 @@ class Maps:
     solid: list[np.ndarray]
     translucent: list[np.ndarray]
     colors: list[np.ndarray]
+
+
+def roughness_of(layer: ReliefLayer | None, unless_given: float) -> float:
+    """What a layer says, or else what its kind has."""
+    return unless_given if layer is None or layer.roughness is None else layer.roughness
 
 
 def hull(item: ReliefSurface) -> Hull:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pellucid.scene import Mesh, ReliefSurface
-from pellucid.techniques.relief.prepare import tiles_of
+from pellucid.techniques.relief.prepare import SOLID_ROUGHNESS, roughness_of, tiles_of
 
 BELOW = 1e-4  # of the mesh's extent: the relief's own rays to lamps must not meet what stands for it
 
@@ -24,7 +24,7 @@ def stand_in(item: ReliefSurface) -> Mesh:
         mesh.normals,
         mesh.uvs * np.asarray(tiles_of(item), np.float32),
         base_color_map=None if colors.ndim == 1 else item.solid.colors,
-        roughness=0.6 if item.solid.roughness is None else item.solid.roughness,
+        roughness=roughness_of(item.solid, SOLID_ROUGHNESS),
         specular=item.solid.specular,
         position=item.position,
         rotation=item.rotation,
