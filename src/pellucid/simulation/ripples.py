@@ -12,6 +12,8 @@ from pellucid.simulation.layouts import RippleDent, RippleParams
 
 #: Cells of a workgroup, in a row: neighbours in memory are three times as fast as squares on the software driver.
 ROW = 64
+#: Cells of a column that one invocation follows: RIPPLE_STRIP of shaders/ripple_bindings.wgsl.
+STRIP = 8
 
 
 class RippleSimulation:
@@ -20,7 +22,8 @@ class RippleSimulation:
     Parameters
     ----------
     device : where it runs.
-    ripples : what is simulated. Drops that fall into it later reach the device too; its own state is not used.
+    ripples : what is simulated. Drops that fall into it later reach the device too; of its own state only the time is
+        written.
 
     Attributes
     ----------
@@ -39,7 +42,8 @@ class RippleSimulation:
         self._friction = device.buffer(ripples.friction.astype(np.float32), label="ripple friction")
         self._params = device.buffer(RippleParams.itemsize, "uniform", "ripple parameters")
         self._step, self._show, self._dent = (_kernel(device, name) for name in ("step", "show", "dent"))
-        self._groups = (-(-columns // ROW), rows, 1)
+        self._groups = (-(-columns // ROW), -(-rows // STRIP), 1)
+        self._cells = (-(-columns // ROW), rows, 1)
         self._applied: list[Disturbance] = []
         self._done = 0
         self._params_now = self._constant_params()
@@ -70,6 +74,7 @@ class RippleSimulation:
             self._press(disturbance, encoder)
         self._steps_to(plan.last, encoder)
         self._show.run(self._groups, self._bindings(heights=self.heights), encoder)
+        self.ripples.time_s = float(time_s)  # what falls in without a time does so now
         if own:
             self.device.wgpu.queue.submit([encoder.finish()])
         return self.heights
@@ -89,7 +94,7 @@ class RippleSimulation:
         dent["periodic"] = self.ripples.boundary == "periodic"
         # A buffer of its own for each: those of one submission are all written before it begins.
         given = {"dent": self.device.buffer(dent, "uniform", "ripple dent"), "displacement": self._states[0]}
-        self._dent.run(self._groups, given, encoder)
+        self._dent.run(self._cells, given, encoder)
         self._applied.append(disturbance)
 
     def _bindings(self, **more: Any) -> dict[str, Any]:

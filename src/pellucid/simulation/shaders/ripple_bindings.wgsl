@@ -7,6 +7,8 @@
 @group(0) @binding(2) var<storage, read_write> velocity: array<f32>;
 @group(0) @binding(3) var<storage, read> friction: array<f32>;
 
+const RIPPLE_STRIP = 8u;  // cells of a column that one invocation follows: sums of a row serve five of them (ripples.STRIP)
+
 // Number of a row or column up to two outside of the border: repeated, or mirrored, so that nothing flows out.
 fn ripple_line(at: i32, count: u32) -> u32 {
     let n = i32(count);
@@ -15,34 +17,65 @@ fn ripple_line(at: i32, count: u32) -> u32 {
     return u32(select(low, select(2 * n - 1 - at, at - n, around), at >= n));
 }
 
-// c^2 L' u with L' = L - (h^2 - c^2 dt^2)/12 L L, L the nine-point Laplacian [shubin1987]: fields/waves.py, stencil
-fn ripple_acceleration(at: vec2i) -> f32 {
-    let a = ripple_line(at.x - 2, ripples.size.x);
-    let b = ripple_line(at.x - 1, ripples.size.x);
-    let c = u32(at.x);
-    let d = ripple_line(at.x + 1, ripples.size.x);
-    let e = ripple_line(at.x + 2, ripples.size.x);
-    let far = ripple_row(ripple_line(at.y - 2, ripples.size.y), a, b, c, d, e)
-            + ripple_row(ripple_line(at.y + 2, ripples.size.y), a, b, c, d, e);
-    let near = ripple_row(ripple_line(at.y - 1, ripples.size.y), a, b, c, d, e)
-             + ripple_row(ripple_line(at.y + 1, ripples.size.y), a, b, c, d, e);
-    let here = ripple_row(u32(at.y), a, b, c, d, e);
-    return dot(here, ripples.near.xyw) + dot(near, vec3f(ripples.near.yz, ripples.far.x))
-         + dot(far, vec3f(ripples.near.w, ripples.far.xy));
+// Columns around one, up to two away
+struct RippleColumns {
+    left_2: u32,
+    left: u32,
+    middle: u32,
+    right: u32,
+    right_2: u32,
 }
 
-// Sums of a row's displacements at the columns 0, 1 and 2 away
-fn ripple_row(row: u32, a: u32, b: u32, c: u32, d: u32, e: u32) -> vec3f {
-    let first = row * ripples.size.x;
-    return vec3f(
-        displacement[first + c],
-        displacement[first + b] + displacement[first + d],
-        displacement[first + a] + displacement[first + e],
+fn ripple_columns(column: u32) -> RippleColumns {
+    let at = i32(column);
+    let n = ripples.size.x;
+    return RippleColumns(
+        ripple_line(at - 2, n), ripple_line(at - 1, n), column, ripple_line(at + 1, n), ripple_line(at + 2, n)
     );
 }
 
+// Sums of a row's displacements at the columns 0, 1 and 2 away; a row may be up to two outside
+fn ripple_sums(row: i32, columns: RippleColumns) -> vec3f {
+    let first = ripple_line(row, ripples.size.y) * ripples.size.x;
+    return vec3f(
+        displacement[first + columns.middle],
+        displacement[first + columns.left] + displacement[first + columns.right],
+        displacement[first + columns.left_2] + displacement[first + columns.right_2],
+    );
+}
+
+// Sums of five rows, the one in the middle and those around it
+struct RippleRows {
+    above_2: vec3f,
+    above: vec3f,
+    here: vec3f,
+    below: vec3f,
+    below_2: vec3f,
+}
+
+// Rows around the one before `row`: the last of the five is still to come
+fn ripple_rows_before(row: i32, columns: RippleColumns) -> RippleRows {
+    return RippleRows(
+        vec3f(0.0), ripple_sums(row - 2, columns), ripple_sums(row - 1, columns), ripple_sums(row, columns),
+        ripple_sums(row + 1, columns)
+    );
+}
+
+// The same around the next row
+fn ripple_rows_next(rows: RippleRows, row: i32, columns: RippleColumns) -> RippleRows {
+    return RippleRows(rows.above, rows.here, rows.below, rows.below_2, ripple_sums(row + 2, columns));
+}
+
+// c^2 L' u with L' = L - (h^2 - c^2 dt^2)/12 L L, L the nine-point Laplacian [shubin1987]: fields/waves.py, stencil
+fn ripple_acceleration(rows: RippleRows) -> f32 {
+    let far = rows.above_2 + rows.below_2;
+    let near = rows.above + rows.below;
+    return dot(rows.here, ripples.near.xyw) + dot(near, vec3f(ripples.near.yz, ripples.far.x))
+         + dot(far, vec3f(ripples.near.w, ripples.far.xy));
+}
+
 // Velocity half a step after the state; damping by the mean of both velocities
-fn ripple_next_velocity(at: vec2i, cell: u32) -> f32 {
+fn ripple_next_velocity(rows: RippleRows, cell: u32) -> f32 {
     let drag = friction[cell] * ripples.step_s;
-    return (velocity[cell] * (1.0 - drag) + ripples.step_s * ripple_acceleration(at)) / (1.0 + drag);
+    return (velocity[cell] * (1.0 - drag) + ripples.step_s * ripple_acceleration(rows)) / (1.0 + drag);
 }

@@ -6,12 +6,18 @@
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    if (any(id.xy >= ripples.size)) { return; }
-    let cell = id.y * ripples.size.x + id.x;
-    let before = velocity[cell];
-    let after = ripple_next_velocity(vec2i(id.xy), cell);
-    let s = ripples.rest_s;
-    let u = displacement[cell] + s * 0.5 * (before + after) + s * s / (2.0 * ripples.step_s) * (after - before);
-    let height = ripples.level_m + clamp(u, -ripples.limit_m, ripples.limit_m);
-    textureStore(heights, id.xy, vec4f(height, 0.0, 0.0, 0.0));
+    if (id.x >= ripples.size.x) { return; }
+    let first = id.y * RIPPLE_STRIP;
+    let columns = ripple_columns(id.x);
+    var rows = ripple_rows_before(i32(first), columns);
+    for (var row = first; row < min(first + RIPPLE_STRIP, ripples.size.y); row++) {
+        rows = ripple_rows_next(rows, i32(row), columns);
+        let cell = row * ripples.size.x + id.x;
+        let before = velocity[cell];
+        let after = ripple_next_velocity(rows, cell);
+        let s = ripples.rest_s;
+        let u = rows.here.x + s * 0.5 * (before + after) + s * s / (2.0 * ripples.step_s) * (after - before);
+        let height = ripples.level_m + clamp(u, -ripples.limit_m, ripples.limit_m);
+        textureStore(heights, vec2u(id.x, row), vec4f(height, 0.0, 0.0, 0.0));
+    }
 }

@@ -6,9 +6,15 @@
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    if (any(id.xy >= ripples.size)) { return; }
-    let cell = id.y * ripples.size.x + id.x;
-    let w = ripple_next_velocity(vec2i(id.xy), cell);
-    velocity[cell] = w;
-    following[cell] = displacement[cell] + ripples.step_s * w;
+    if (id.x >= ripples.size.x) { return; }
+    let first = id.y * RIPPLE_STRIP;
+    let columns = ripple_columns(id.x);
+    var rows = ripple_rows_before(i32(first), columns);
+    for (var row = first; row < min(first + RIPPLE_STRIP, ripples.size.y); row++) {
+        rows = ripple_rows_next(rows, i32(row), columns);
+        let cell = row * ripples.size.x + id.x;
+        let w = ripple_next_velocity(rows, cell);
+        velocity[cell] = w;
+        following[cell] = rows.here.x + ripples.step_s * w;
+    }
 }

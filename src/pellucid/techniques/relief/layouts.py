@@ -90,3 +90,13 @@ ReliefBeam = struct(
         ("landed", "vec2f"),  # where, texels
     ]
 )
+
+# What the maps of heights that move are made with.
+ReliefMoving = struct(
+    [
+        ("tile_m", "vec2f"),  # metres a tile in the mean
+        ("solid_base_m", "f32"),  # added to the heights of a layer
+        ("translucent_base_m", "f32"),
+        ("tiling", "u32"),
+    ]
+)

@@ -18,6 +18,7 @@ from pellucid.techniques.relief.diffuse import diffuse_tables
 from pellucid.techniques.relief.frames import Hull
 from pellucid.techniques.relief.layouts import ReliefParams
 from pellucid.techniques.relief.light import LightMaps, LightPasses, light_constants, mapped_lights, plane_of
+from pellucid.techniques.relief.moving import MovingMaps, device_moves
 from pellucid.techniques.relief.prepare import (
     MARGIN,
     SOLID_ROUGHNESS,
@@ -45,7 +46,8 @@ class Body:
     Attributes
     ----------
     item : what the user described. quality : what its technique makes of its quality.
-    hull, maps : its geometry and its layers as arrays. time_s : of heights that move; version : counts their changes.
+    hull, maps : its geometry and its layers as arrays; of heights that `moving` writes, as they begin.
+    time_s : of heights that move; version : counts their changes. moving : makes their maps on the device, if it can.
     bindings : resources of bind group 0 by their WGSL names.
     light_constants : override constants of how light of the lamps is found; filled in by `illuminate`.
     """
@@ -60,6 +62,7 @@ class Body:
     nbytes: int = 0
     time_s: float = 0.0
     version: int = 0
+    moving: MovingMaps | None = None
     params: np.ndarray = field(default_factory=lambda: np.zeros((), ReliefParams))
     light_constants: dict[str, float] = field(default_factory=dict)
 
@@ -139,9 +142,13 @@ class ReliefTechnique:
         """Move the heights of layers that do to a time, and all that depends on them."""
         for body in self.bodies:
             item = body.item
-            if _moves(item) and time_s != body.time_s:
+            if not _moves(item) or time_s == body.time_s:
+                continue
+            body.time_s, body.version = time_s, body.version + 1
+            if body.moving is not None:
+                body.moving.advance(time_s)
+            else:
                 body.maps = maps(item, body.hull.tile_m, self.device.float32_filterable, time_s, body.maps)
-                body.time_s, body.version = time_s, body.version + 1
                 self._rewrite(body)
 
     def _rewrite(self, body: Body) -> None:
@@ -248,13 +255,14 @@ class ReliefTechnique:
             # Bounds are new in a moment; maps of free space are not, and find nothing that bounds do not.
             quality = quality.replace(search="max_mip")
         two_layers = draws_two_layers(item)
-        maps_key = [*_maps_key(item, shape.tile_m), quality.search, quality.complexity, two_layers]
+        on_device = _moves(item) and device_moves(self.device, item, quality)
+        maps_key = [*_maps_key(item, shape.tile_m), quality.search, quality.complexity, two_layers, on_device]
         alike = next((b for b in before if _same(b.maps_key, maps_key)), None)
         layers = alike.maps if alike else maps(item, shape.tile_m, self.device.float32_filterable)
         if alike:
             bindings |= {name: alike.bindings[name] for name in MAP_NAMES if name in alike.bindings}
         else:
-            bindings |= self._upload(layers, item.tiling)
+            bindings |= self._upload(layers, item.tiling, on_device)
             of_quality = (quality.search, quality.complexity)
             bindings |= search_bindings(self.device, *of_quality, layers.heights, two_layers, shape.tile_m, item.tiling)
         nbytes += shape.vertices.nbytes + sum(a.nbytes for a in (layers.heights, *layers.bounds))
@@ -265,25 +273,32 @@ class ReliefTechnique:
             bindings["relief"] = self.device.buffer(ReliefParams.itemsize, "uniform", "relief")
         body = Body(item, quality, shape, layers, bindings, geometry_key, maps_key, nbytes)
         if alike:
-            body.time_s, body.version = alike.time_s, alike.version
+            body.time_s, body.version, body.moving = alike.time_s, alike.version, alike.moving
+        elif on_device:
+            others = [b.moving for b in before if b.moving is not None]
+            body.moving = MovingMaps(self.device, item, shape.tile_m, bindings, others)
+            body.nbytes += body.moving.nbytes
         return body
 
-    def _upload(self, layers: Maps, tiling: bool) -> dict[str, Any]:
+    def _upload(self, layers: Maps, tiling: bool, written: bool) -> dict[str, Any]:
+        """Textures and samplers; `written` ones a kernel may write to."""
         address = "repeat" if tiling else "clamp"
         filterable = self.device.float32_filterable
+        slopes = [_four(s) for s in layers.solid], [_four(s) for s in layers.translucent]
         return {
-            "height_map": self._texture([layers.heights], "rg32float" if filterable else "rg16float", "heights"),
+            "height_map": self._texture([layers.heights], f"rg{32 if filterable else 16}float", "heights", written),
             "height_sampler": self.device.sampler("linear", address),
-            "height_bounds": self._texture(layers.bounds, "rgba32float", "height bounds"),
-            "solid_surface": self._texture([_four(s) for s in layers.solid], "rgba16float", "solid slopes"),
-            "translucent_surface": self._texture([_four(s) for s in layers.translucent], "rgba16float", "slopes"),
+            "height_bounds": self._texture(layers.bounds, "rgba32float", "height bounds", written),
+            "solid_surface": self._texture(slopes[0], "rgba16float", "solid slopes", written),
+            "translucent_surface": self._texture(slopes[1], "rgba16float", "slopes", written),
             "color_map": self._texture([_four(c) for c in layers.colors], "rgba16float", "colours"),
             "surface_sampler": self.device.sampler("linear", address),
         }
 
-    def _texture(self, levels: Sequence[np.ndarray], format: str, label: str) -> Any:
+    def _texture(self, levels: Sequence[np.ndarray], format: str, label: str, written: bool = False) -> Any:
         height, width = levels[0].shape[:2]
-        texture = self.device.texture(size=(width, height), format=format, mips=len(levels), label=label)
+        usage = ("sample", "storage") if written else ("sample",)
+        texture = self.device.texture(size=(width, height), format=format, mips=len(levels), usage=usage, label=label)
         for mip, level in enumerate(levels):
             self.device.write_texture(texture, level, mip=mip)
         return texture
