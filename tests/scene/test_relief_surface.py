@@ -73,7 +73,15 @@ def test_a_surface_that_cannot_be_is_refused(field: str, given: dict[str, Any]) 
 
 
 @pytest.mark.parametrize(
-    "given", [{"search": "best"}, {"linear_steps": 0}, {"refraction_steps": 8}, {"shadow_steps": 2.5}, {"hue": 1}]
+    "given",
+    [
+        {"search": "best"},
+        {"linear_steps": 0},
+        {"refraction_steps": 8},
+        {"shadow_steps": 2.5},
+        {"refraction_pieces": 17},
+        {"hue": 1},
+    ],
 )
 def test_a_quality_that_cannot_be_is_refused(given: dict[str, Any]) -> None:
     with pytest.raises(pl.SceneError, match=next(iter(given))):

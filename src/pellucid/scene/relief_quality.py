@@ -32,6 +32,8 @@ class ReliefQuality(Value):
     refraction_steps : linear and binary steps of rays in the translucent layer.
     refraction : ``"search"`` for the solid layer along the refracted ray, or meet a ``"plane"`` as deep as the layer
         is where the ray enters.
+    refraction_pieces : straight pieces of a refracted ray that a search follows, 1 to 16: total reflections within the
+        matter, ways out of it and in again. The next is taken to end on what lies below.
     adapt_angle, adapt_distance : take fewer steps where the view is steep, or the relief far away.
     complexity : take fewer steps where the heights are simple.
     reflection : what mirrored rays see: the ``"environment"`` (see below), with ``"plane"`` first the relief as if it
@@ -60,6 +62,7 @@ class ReliefQuality(Value):
     linear_approximation: bool = True
     refraction_steps: tuple[int, int] = (8, 5)
     refraction: str = "search"
+    refraction_pieces: int = 4
     adapt_angle: bool = True
     adapt_distance: bool = True
     complexity: bool = False
@@ -85,6 +88,9 @@ class ReliefQuality(Value):
             self,
             linear_steps=checks.integer("relief_quality.linear_steps", self.linear_steps, low=1, high=1024),
             binary_steps=checks.integer("relief_quality.binary_steps", self.binary_steps, low=0, high=32),
+            refraction_pieces=checks.integer(
+                "relief_quality.refraction_pieces", self.refraction_pieces, low=1, high=16
+            ),
             shadow_steps=checks.integer("relief_quality.shadow_steps", self.shadow_steps, low=1, high=256),
             refraction_steps=(
                 checks.integer("relief_quality.refraction_steps[0]", given[0], low=1, high=1024),
@@ -108,6 +114,7 @@ _THESIS = {
     "linear_approximation": True,
     "refraction_steps": (8, 5),
     "refraction": "search",
+    "refraction_pieces": 1,
     "adapt_angle": False,
     "adapt_distance": False,
     "complexity": False,

@@ -246,6 +246,7 @@ class ReliefQualityFile(Model):
     linear_approximation: StrictBool = UNSET
     refraction_steps: tuple[StrictInt, StrictInt] = UNSET
     refraction: StrictStr = UNSET
+    refraction_pieces: StrictInt = UNSET
     adapt_angle: StrictBool = UNSET
     adapt_distance: StrictBool = UNSET
     complexity: StrictBool = UNSET

@@ -86,6 +86,7 @@ class Body:
             "RELIEF_NORMALS": float(self.step != "color"),
             "RELIEF_SEARCH": float(SEARCHES.index(quality.search)),
             "RELIEF_REFRACTION": float(REFRACTIONS.index(quality.refraction)),
+            "RELIEF_PIECES": float(quality.refraction_pieces),
             "RELIEF_CUBE": float(quality.environment.startswith("cube")),
             "RELIEF_REFLECTION": float(REFLECTIONS.index(quality.reflection)),
             **self.light_constants,

@@ -5,8 +5,6 @@
 //!import techniques/relief/shaders/layer
 //!import techniques/relief/shaders/outside
 
-const RELIEF_GRAZING = 1e-3;  // least cosine between normal and view
-
 @fragment
 fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let record = textureLoad(relief_hits, vec2i(position.xy), 0);
@@ -31,10 +29,13 @@ fn seen_radiance(pixel: vec2f, record: vec4u) -> vec3f {
     if RELIEF_DEPTH == 1u {
         uv = relief_offset(frame_at, direction_ws);
     }
-    let footprint = relief_footprint(frame_at, p_ws, direction_ws);
-    relief_pixel_tiles = footprint;
-    let on_wall = bits.x == 0.0 && any(frame_at.wall_ws != vec3f(0.0));
     let h = relief_height_along(ray, bits.x);
+    let on_wall = bits.x == 0.0 && any(frame_at.wall_ws != vec3f(0.0));
+    var footprint = relief_footprint(frame_at, p_ws, direction_ws);
+    if on_wall {
+        footprint = cut_footprint(frame_at, uv, h, p_ws);
+    }
+    relief_pixel_tiles = footprint;
     if !TWO_LAYERS {
         return solid_alone(frame_at, uv, h, p_ws, direction_ws, footprint, on_wall);
     }
@@ -93,17 +94,18 @@ fn solid_alone(
     return relief_solid_radiance(point, -direction_ws, footprint, false);
 }
 
+// The cut at an open border has the colours of the layer over it: the deeper, the wider around. Those right above alone
+// would be drawn out into streaks.
+fn cut_footprint(frame_at: ReliefFrame, uv: vec2f, h: f32, p_ws: vec3f) -> f32 {
+    let depth_m = max(relief_heights(uv).x - h, 0.0);
+    return max(footprint_m(p_ws), depth_m) / relief_side_m(frame_at);
+}
+
 // At an open border the surface is the cut
 fn seen_point(frame_at: ReliefFrame, uv: vec2f, h: f32, p_ws: vec3f, footprint: f32, cut: bool) -> ReliefPoint {
     var point = relief_solid_point(frame_at, uv, p_ws, footprint);
     point.n_ws = select(point.n_ws, frame_at.wall_ws, cut);
     point.h = select(point.h, h, cut);
+    point.is_cut = cut;
     return point;
-}
-
-// A normal that leans away from the viewer is turned until it just faces them: interpolated slopes do not know what
-// the polygon hides
-fn relief_towards(n_ws: vec3f, direction_ws: vec3f) -> vec3f {
-    let facing = -dot(n_ws, direction_ws);
-    return select(n_ws, normalize(n_ws - (RELIEF_GRAZING - facing) * direction_ws), facing < RELIEF_GRAZING);
 }

@@ -31,6 +31,7 @@ struct ReliefPoint {
     p_ws: vec3f,
     n_ws: vec3f,       // unit normal of the layer
     frame: ReliefFrame,
+    is_cut: bool,      // on the cut at an open border, not on the layer's surface
 }
 
 fn relief_vertex_ws(index: u32) -> vec3f {

@@ -54,6 +54,6 @@ fn relief_refract(frame_at: ReliefFrame, at: LayerPoint, k: u32, outside: ptr<fu
         (*outside).passed = OutsideLook(end.p_ws, end.direction_ws, scattered, (*outside).passed.weight + weight);
     }
     let denser = relief.n_outside / relief.n_layer;
-    let seen = select(vec3f(0.0), weight * denser * denser, end.solid);
-    return SolidLook(end.uv, spread, true, end.p_ws, -end.direction_ws, seen);
+    let seen = select(vec3f(0.0), weight * select(vec3f(1.0), denser * denser, end.wet), end.solid);
+    return SolidLook(end.uv, spread, end.wet, end.p_ws, -end.direction_ws, seen);
 }

@@ -7,6 +7,9 @@ override RELIEF_CAUSTICS: bool = false;
 
 // By channel, of the light that comes straight from the lamp
 fn relief_light_share(point: ReliefPoint, light: u32) -> vec3f {
+    if point.is_cut {
+        return vec3f(1.0);  // before it there is nothing of the relief
+    }
     if RELIEF_LIGHT_MAPS && relief_light_is_mapped(light) {
         let at = relief_map_uv(point.uv);
         return textureSampleLevel(light_map, surface_sampler, at, i32(light), 0.0).rgb;

@@ -33,10 +33,15 @@ fn relief_falling(ray: ReliefRay, height: f32) -> f32 {
 
 // Where texture coordinates leave the rectangle of the mesh
 fn relief_clip(ray: ReliefRay) -> f32 {
+    let t = relief_clips(ray);
+    return min(t.x, t.y);
+}
+
+// The same for u and v apart
+fn relief_clips(ray: ReliefRay) -> vec2f {
     let ahead = select(relief.clip_low, relief.clip_high, ray.duv > vec2f(0.0));
     let t = (ahead - ray.uv) / select(vec2f(1e-20), ray.duv, abs(ray.duv) > vec2f(1e-20));
-    let runs = abs(ray.duv) > vec2f(1e-20);
-    return min(select(1e30, t.x, runs.x), select(1e30, t.y, runs.y));
+    return select(vec2f(1e30), t, abs(ray.duv) > vec2f(1e-20));
 }
 
 fn relief_inside(uv: vec2f) -> bool {

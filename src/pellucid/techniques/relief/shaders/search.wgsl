@@ -27,6 +27,16 @@ fn relief_search(ray: ReliefRay, reach: f32, kind: u32, linear: u32, binary: u32
     return relief_by_cones(ray, reach, kind);
 }
 
+// A ray that has entered the translucent matter: within it as `relief_leave`, over it as `relief_first`. Both in one
+// search, which each turn of a loop may use another way; what it enters and leaves is mostly near.
+fn relief_onwards(ray: ReliefRay, reach: f32, is_inside: bool) -> ReliefHit {
+    let kind = select(RELIEF_FIRST, RELIEF_LEAVE, is_inside);
+    if RELIEF_SEARCH == RELIEF_LINEAR {
+        return relief_linear(ray, reach, kind, relief.refraction_linear, relief.refraction_binary);
+    }
+    return relief_by_bounds(ray, reach, kind);
+}
+
 // First of both layers, from outside
 fn relief_first(ray: ReliefRay, reach: f32) -> ReliefHit {
     return relief_search(ray, reach, RELIEF_FIRST, relief.linear_steps, relief.binary_steps);

@@ -15,7 +15,7 @@ fn relief_color(uv: vec2f, footprint: f32) -> vec3f {
 
 fn relief_solid_point(frame_at: ReliefFrame, uv: vec2f, p_ws: vec3f, footprint: f32) -> ReliefPoint {
     let slopes = select(vec2f(0.0), relief_solid_slopes(uv, relief_surface_level(footprint)), RELIEF_NORMALS);
-    return ReliefPoint(uv, relief_heights(uv).x, p_ws, relief_normal(frame_at, uv, slopes), frame_at);
+    return ReliefPoint(uv, relief_heights(uv).x, p_ws, relief_normal(frame_at, uv, slopes), frame_at, false);
 }
 
 // Radiance towards `view_ws`, inside the translucent matter where it is `wet`. There light of lamps arrives refracted,
