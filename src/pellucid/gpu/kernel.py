@@ -12,6 +12,9 @@ from pellucid.gpu.modules import Binding, ModuleSource, compile_module, located,
 
 Bindings = Mapping[str, Any]
 
+# Bind groups that a pipeline keeps: several views of one frame take turns with it.
+GROUPS_KEPT = 12
+
 
 class _Pipeline:
     """What compute and render share: module, explicit layouts made from the declarations, bind groups by name."""
@@ -30,7 +33,7 @@ class _Pipeline:
             for group in self.groups
         ]
         self.layout = device.wgpu.create_pipeline_layout(bind_group_layouts=self._layouts)
-        self._bound: dict[int, tuple[tuple[int, ...], Any, list[Any]]] = {}
+        self._bound: dict[tuple[int, ...], tuple[Any, list[Any]]] = {}
 
     def create(self, build: Any, entry: str, **options: Any) -> Any:
         import wgpu
@@ -48,14 +51,14 @@ class _Pipeline:
         return [self._group(i, group, [bindings[b.name] for b in group]) for i, group in enumerate(self.groups)]
 
     def _group(self, index: int, group: list[Binding], resources: list[Any]) -> Any:
-        key = tuple(id(r) for r in resources)
-        cached = self._bound.get(index)
-        if cached is None or cached[0] != key:
+        key = (index, *(id(r) for r in resources))
+        if key not in self._bound:
             entries = [{"binding": b.binding, "resource": _resource(r)} for b, r in zip(group, resources, strict=True)]
-            made = self._make_group(index, entries)
+            while len(self._bound) >= GROUPS_KEPT:
+                del self._bound[next(iter(self._bound))]
             # The resources are kept so that no id is used again while this entry stands.
-            self._bound[index] = cached = (key, made, resources)
-        return cached[1]
+            self._bound[key] = self._make_group(index, entries), resources
+        return self._bound[key][0]
 
     def _make_group(self, index: int, entries: list[dict[str, Any]]) -> Any:
         import wgpu
@@ -245,11 +248,14 @@ class RenderPass:
         vertex_buffers: Sequence[Any] = (),
         index_buffer: Any = None,
         index_count: int = 0,
+        ranges: Sequence[tuple[int, int]] | None = None,
         scissor: tuple[int, int, int, int] | None = None,
         timer: Any = None,
         label: str = "",
     ) -> None:
         """Encode one pass that draws into `color` views and `depth`; what is not cleared is kept.
+
+        `ranges` are (first vertex, number) of several draws instead of the first `vertices`.
 
         Raises
         ------
@@ -285,5 +291,6 @@ class RenderPass:
             draw.set_index_buffer(index_buffer, "uint32")
             draw.draw_indexed(index_count, instances)
         else:
-            draw.draw(vertices, instances)
+            for first, count in ((0, vertices),) if ranges is None else ranges:
+                draw.draw(count, instances, first)
         draw.end()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellucid.surroundings import environment, geometry, lights, maps
-from pellucid.surroundings.camera import write_camera
+from pellucid.surroundings.camera import View, view_of, write_view
 from pellucid.surroundings.caustics import CausticMaps
 from pellucid.surroundings.layouts import MATERIAL_CASTS_SHADOW, MATERIAL_UNSEEN, FrameParams
 
@@ -35,7 +35,10 @@ class Surroundings:
     shadow_views : one depth view for each shadow map, in the order of their layers.
     shadow_lights : which light of the scene each shadow map belongs to.
     caustics : light of refractive matter on the meshes.
+    view : the camera, as `set_camera` was told.
     """
+
+    view: View
 
     def __init__(self, device: Device) -> None:
         self.device = device
@@ -135,14 +138,16 @@ class Surroundings:
         jitter : offset of the sampled point from each pixel's centre, pixels right and down.
         sample_index : number of the picture among those that are averaged.
         """
-        write_camera(self._frame, camera, size, jitter)
-        height = float(self._frame["environment_height"])
-        texel = np.pi / height if height else np.pi
-        orthographic = bool(self._frame["flags"])
-        spread = 0.0 if orthographic else float(self._frame["pixel_footprint"])
-        self._frame["environment_pixel_lod"] = max(0.0, np.log2(max(spread / texel, 1e-9)))
+        self.view = view_of(camera, size)
+        write_view(self._frame, self.view, size, jitter)
         self._frame["sample_index"] = sample_index
         self.device.write(self._resources["frame"], self._frame.reshape(1))
+
+    def frame_of(self, view: View, size: tuple[int, int]) -> np.ndarray:
+        """(1,) frame parameters of another view of the same scene, of `size` (width, height) pixels."""
+        record = self._frame.copy()
+        write_view(record, view, size)
+        return record.reshape(1)
 
     @property
     def sample_index(self) -> int:

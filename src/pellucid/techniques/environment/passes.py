@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from pellucid.gpu.kernel import RenderPass
-from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT
+from pellucid.surroundings.views import SceneView
 
 if TYPE_CHECKING:
     from pellucid.gpu import Device
@@ -22,14 +21,7 @@ class Sky:
     """
 
     def __init__(self, device: Device) -> None:
-        self._pass = RenderPass(
-            device,
-            "techniques/environment/shaders/sky",
-            targets=(COLOR_FORMAT,),
-            depth=DEPTH_FORMAT,
-            depth_compare="greater-equal",  # at depth 0 this holds only where nothing was drawn
-            depth_write=False,
-        )
+        self._view = SceneView(device)
 
     def prepare(self, surroundings: Surroundings) -> None:
         """Nothing of its own: the environment belongs to the surroundings, which every ray shares."""
@@ -43,11 +35,4 @@ class Sky:
         timer: PassTimer | None = None,
     ) -> None:
         """Draw where `depth` is 0; keeps the rest of `color` (rgba32float) and all of `depth`."""
-        self._pass.run(
-            encoder,
-            color=[color],
-            depth=depth,
-            bindings=surroundings.bindings,
-            timer=timer,
-            label="sky",
-        )
+        self._view.draw_sky(encoder, color, depth, surroundings.bindings, timer)

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellucid.gpu.kernel import RenderPass
-from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT
+from pellucid.gpu.targets import DEPTH_FORMAT
+from pellucid.surroundings.views import SceneView
 
 if TYPE_CHECKING:
     from pellucid.gpu import Device
@@ -33,15 +34,7 @@ class Opaque:
             depth=DEPTH_FORMAT,
             depth_compare="less",
         )
-        self._visibility = RenderPass(
-            device,
-            "techniques/opaque/shaders/visibility",
-            targets=("r32uint",),
-            depth=DEPTH_FORMAT,
-            depth_compare="greater",
-        )
-        self._shadings: dict[tuple[float, ...], RenderPass] = {}
-        self._triangles: Any = None
+        self._view = SceneView(device)
         self._shadow_lights: list[Any] = []
         self._drawn: tuple[Surroundings, int] | None = None
 
@@ -80,54 +73,11 @@ class Opaque:
         surroundings: Surroundings,
         timer: PassTimer | None = None,
     ) -> None:
-        """Clear both targets and draw every mesh: first which triangle each pixel shows, then its light.
-
-        Shading once a pixel spares the pixels that small triangles share and hide from one another.
+        """Clear both targets and draw every mesh.
 
         Parameters
         ----------
         color : view of an rgba32float target of the surroundings' size, receives linear radiance; 0 where nothing is.
         depth : view of a depth32float target, receives reversed depth; 0 where nothing is.
         """
-        triangles = self._triangle_target(surroundings.size)
-        self._visibility.run(
-            encoder,
-            color=[triangles.create_view()],
-            depth=depth,
-            clear=[(0.0, 0.0, 0.0, 0.0)],
-            clear_depth=0.0,
-            bindings=surroundings.bindings,
-            vertices=3 * surroundings.triangle_count,
-            timer=timer,
-            label="opaque visibility",
-        )
-        self._shading(surroundings.shading_constants).run(
-            encoder,
-            color=[color],
-            depth=depth,
-            clear=[(0.0, 0.0, 0.0, 0.0)],
-            bindings={**surroundings.bindings, "visible_triangles": triangles},
-            timer=timer,
-            label="opaque shading",
-        )
-
-    def _shading(self, constants: dict[str, float]) -> RenderPass:
-        key = tuple(constants.values())
-        if key not in self._shadings:
-            self._shadings[key] = RenderPass(
-                self.device,
-                "techniques/opaque/shaders/shading",
-                targets=(COLOR_FORMAT,),
-                depth=DEPTH_FORMAT,
-                depth_compare="less",  # against depth 0: only where something was drawn
-                depth_write=False,
-                constants=constants,
-            )
-        return self._shadings[key]
-
-    def _triangle_target(self, size: tuple[int, int]) -> Any:
-        if self._triangles is None or (self._triangles.width, self._triangles.height) != size:
-            self._triangles = self.device.texture(
-                size=size, format="r32uint", usage=("sample", "render"), label="visible triangles"
-            )
-        return self._triangles
+        self._view.draw(encoder, color, depth, surroundings, timer=timer)

@@ -1,0 +1,185 @@
+"""Opaque meshes and the sky from any camera: which triangle each pixel shows, then its light, then the background."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pellucid.gpu.kernel import RenderPass
+from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT
+from pellucid.surroundings.culling import Clusters, clusters, visible_ranges
+
+if TYPE_CHECKING:
+    from pellucid.gpu import Device
+    from pellucid.gpu.timing import PassTimer
+    from pellucid.surroundings.camera import View
+    from pellucid.surroundings.geometry import Geometry
+    from pellucid.surroundings.prepare import Surroundings
+
+SHADERS = "surroundings/shaders"
+CLEAR = (0.0, 0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What of the meshes a view shows.
+
+    clip : (a, b, c, d) keeps what has a x + b y + c z + d >= 0, exactly at each pixel; None keeps all.
+    cull_back_faces : leave out what turns its back to the camera, double-sided or not, so that no solid that is cut
+        open shows its inside.
+    stand_ins : show what only rays meet too.
+    """
+
+    clip: tuple[float, float, float, float] | None = None
+    cull_back_faces: bool = False
+    stand_ins: bool = False
+
+    @property
+    def constants(self) -> dict[str, float]:
+        """Override constants of the visibility pass."""
+        return {"CULL_BACK_FACES": float(self.cull_back_faces), "STAND_INS": float(self.stand_ins)}
+
+
+EVERYTHING = Shown()
+
+
+def above(level_m: float) -> tuple[float, float, float, float]:
+    """Clip plane that keeps y >= level."""
+    return (0.0, 1.0, 0.0, -level_m)
+
+
+def below(level_m: float) -> tuple[float, float, float, float]:
+    """Clip plane that keeps y <= level."""
+    return (0.0, -1.0, 0.0, level_m)
+
+
+class SceneView:
+    """Draws the surroundings from one camera; keeps what the next picture from it needs.
+
+    Shading once a pixel spares the pixels that small triangles share and hide from one another [burns2013].
+
+    Parameters
+    ----------
+    device : where to draw.
+    format : of the colour targets that it is given.
+    """
+
+    def __init__(self, device: Device, format: str = COLOR_FORMAT) -> None:
+        self.device = device
+        self.format = format
+        self._triangles: Any = None
+        self._frame: Any = None
+        self._clip: Any = None
+        self._clusters: tuple[Geometry | None, Clusters | None] = (None, None)
+
+    def draw(
+        self,
+        encoder: Any,
+        color: Any,
+        depth: Any,
+        surroundings: Surroundings,
+        shown: Shown = EVERYTHING,
+        view: View | None = None,
+        size: tuple[int, int] | None = None,
+        sky: bool = False,
+        timer: PassTimer | None = None,
+        label: str = "opaque",
+    ) -> None:
+        """Clear both targets and draw every mesh, and the sky behind them if it is wanted.
+
+        Parameters
+        ----------
+        color : view of a target of this view's format, receives linear radiance; 0 where nothing is.
+        depth : view of a depth32float target, receives reversed depth; 0 where nothing is.
+        shown : what is drawn.
+        view, size : another camera than that of the surroundings, and the size of its targets in pixels.
+        """
+        size = surroundings.size if size is None else size
+        bindings, record = dict(surroundings.bindings), surroundings.frame
+        if view is not None:
+            record = surroundings.frame_of(view, size)
+            bindings["frame"] = self._frame = self._written(self._frame, record.reshape(1), "frame of a view")
+        if shown.clip is not None:
+            plane = np.array(shown.clip, np.float32)
+            bindings["clip_plane"] = self._clip = self._written(self._clip, plane, "clip plane")
+        triangles = self._triangle_target(size)
+        self._visibility(shown).run(
+            encoder,
+            color=[triangles.create_view()],
+            depth=depth,
+            clear=[CLEAR],
+            clear_depth=0.0,
+            bindings=bindings,
+            ranges=self._ranges(surroundings, record.reshape(())["clip_from_world"].T, shown),
+            timer=timer,
+            label=f"{label} visibility",
+        )
+        self._shading(surroundings.shading_constants).run(
+            encoder,
+            color=[color],
+            depth=depth,
+            clear=[CLEAR],
+            bindings={**bindings, "visible_triangles": triangles},
+            timer=timer,
+            label=f"{label} shading",
+        )
+        if sky:
+            self.draw_sky(encoder, color, depth, bindings, timer, f"{label} sky")
+
+    def draw_sky(
+        self,
+        encoder: Any,
+        color: Any,
+        depth: Any,
+        bindings: dict[str, Any],
+        timer: PassTimer | None = None,
+        label: str = "sky",
+    ) -> None:
+        """Draw the environment where `depth` is 0; keeps the rest of `color` and all of `depth`."""
+        # At depth 0, which is where the triangle that covers the picture lies, this holds where nothing was drawn.
+        sky = self._pass("sky", {}, depth_compare="greater-equal")
+        sky.run(encoder, color=[color], depth=depth, bindings=bindings, timer=timer, label=label)
+
+    def _ranges(self, surroundings: Surroundings, clip_from_world: np.ndarray, shown: Shown) -> list[tuple[int, int]]:
+        geometry, parts = self._clusters
+        if parts is None or geometry is not surroundings.geometry:
+            parts = clusters(surroundings.geometry)
+            self._clusters = surroundings.geometry, parts
+        plane = None if shown.clip is None else np.array(shown.clip)
+        return [(3 * a, 3 * n) for a, n in visible_ranges(parts, clip_from_world, plane)]
+
+    def _visibility(self, shown: Shown) -> RenderPass:
+        module = "visibility" if shown.clip is None else "visibility_clipped"
+        return self._pass(module, shown.constants, targets=("r32uint",), depth_compare="greater", depth_write=True)
+
+    def _shading(self, constants: dict[str, float]) -> RenderPass:
+        # Against depth 0: only where something was drawn.
+        return self._pass("shading", constants, depth_compare="less")
+
+    def _pass(self, module: str, constants: dict[str, float], **options: Any) -> RenderPass:
+        """A pipeline; all views of a device share it, for a software driver compiles a shader for seconds."""
+        options = {"targets": (self.format,), "depth_write": False, **options}
+        key = ("scene view", module, *options["targets"], *constants.values())
+        cache = self.device.cache
+        if key not in cache:
+            cache[key] = RenderPass(
+                self.device, f"{SHADERS}/{module}", depth=DEPTH_FORMAT, constants=constants, **options
+            )
+        made: RenderPass = cache[key]
+        return made
+
+    def _written(self, buffer: Any, record: np.ndarray, label: str) -> Any:
+        buffer = (
+            self.device.buffer(max(record.nbytes, FrameParams.itemsize), "uniform", label) if not buffer else buffer
+        )
+        self.device.write(buffer, record)
+        return buffer
+
+    def _triangle_target(self, size: tuple[int, int]) -> Any:
+        if self._triangles is None or (self._triangles.width, self._triangles.height) != size:
+            self._triangles = self.device.texture(
+                size=size, format="r32uint", usage=("sample", "render"), label="visible triangles"
+            )
+        return self._triangles
