@@ -171,9 +171,7 @@ class SceneView:
         return made
 
     def _written(self, buffer: Any, record: np.ndarray, label: str) -> Any:
-        buffer = (
-            self.device.buffer(max(record.nbytes, FrameParams.itemsize), "uniform", label) if not buffer else buffer
-        )
+        buffer = buffer or self.device.buffer(record.nbytes, "uniform", label)
         self.device.write(buffer, record)
         return buffer
 
