@@ -41,3 +41,9 @@ def test_an_unknown_medium_suggests_the_nearest(pellucid):
 def test_an_impossible_index(pellucid):
     said = pellucid("media", "-1")
     assert said.code in (1, 2) and said.out == ""
+
+
+def test_a_water_states_what_it_absorbs_and_scatters(pellucid):
+    said = pellucid("media", "pond")
+    assert said.code == 0
+    assert "scattering" in said.out and "mean cosine 0.92" in said.out and "absorption, 1/m" in said.out

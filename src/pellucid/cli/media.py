@@ -10,6 +10,11 @@ import typer
 from pellucid.cli.console import outcome
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import numpy as np
+    from numpy.typing import NDArray
+
     from pellucid.media import Medium
 
 LINES_NM = {"h": 404.66, "g": 435.83, "F": 486.13, "e": 546.07, "d": 587.56, "C": 656.28, "A'": 768.19, "s": 852.11}
@@ -68,6 +73,7 @@ def _print_one(medium: Medium) -> None:
         "known": f"{_range(medium)} nm",
         "source": medium.source,
         "absorption": f"{_absorption(medium)} 1/m (red, green, blue); {medium.absorption_source}",
+        **_scattering(medium),
     }
     for title, text in facts.items():
         console.print(f"  {title:<11} {text}")
@@ -79,9 +85,35 @@ def _print_one(medium: Medium) -> None:
     if medium.extraordinary is not None:
         table.add_column("n_e", justify="right")
         rays.append(medium.extraordinary)
+    extinctions = _extinctions(medium)
+    for title in extinctions:
+        table.add_column(title, justify="right")
     for label, wavelength in _wavelengths(medium):
-        table.add_row(label, f"{wavelength:.2f}", *(f"{float(ray.n(wavelength)):.6f}" for ray in rays))
+        known = [f"{float(values(wavelength)):.5f}" for values in extinctions.values()]
+        table.add_row(label, f"{wavelength:.2f}", *(f"{float(ray.n(wavelength)):.6f}" for ray in rays), *known)
     console.print(table)
+
+
+def _scattering(medium: Medium) -> dict[str, str]:
+    """What a body of water has besides its absorption."""
+    from pellucid.media import WaterBody
+
+    if not isinstance(medium, WaterBody):
+        return {}
+    rgb = " ".join(f"{value:.3g}" for value in medium.scattering_rgb_per_m)
+    return {
+        "scattering": f"{rgb} 1/m (red, green, blue); {medium.scattering_source}",
+        "asymmetry": f"mean cosine {medium.asymmetry:.3f} (Henyey-Greenstein)",
+    }
+
+
+def _extinctions(medium: Medium) -> dict[str, Callable[[float], NDArray[np.float64]]]:
+    """Absorption and scattering by wavelength, for the table."""
+    from pellucid.media import WaterBody
+
+    if not isinstance(medium, WaterBody):
+        return {}
+    return {"absorption, 1/m": medium.absorption, "scattering, 1/m": medium.scattering}
 
 
 def _extraordinary(medium: Medium) -> dict[str, str]:

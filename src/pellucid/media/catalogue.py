@@ -7,10 +7,10 @@ from functools import cache
 from numbers import Real
 
 from pellucid.errors import SceneError
-from pellucid.media import crystals, gases, gems, glasses, liquids, plastics
+from pellucid.media import crystals, gases, gems, glasses, liquids, plastics, waters
 from pellucid.media.medium import Medium, constant
 
-_SHELVES = (glasses, crystals, gems, liquids, plastics, gases)
+_SHELVES = (glasses, crystals, gems, liquids, waters, plastics, gases)
 
 
 def names() -> tuple[str, ...]:

@@ -94,7 +94,6 @@ MEDIA: Final[tuple[Medium, ...]] = (
 
 ALIASES: Final = {
     "H2O": "water",
-    "pure water": "water",
     "seawater": "sea water",
     "alcohol": "ethanol",
     "glycerin": "glycerol",

@@ -29,7 +29,7 @@ class Medium:
     Parameters
     ----------
     name : canonical name.
-    kind : ``glass``, ``crystal``, ``gem``, ``liquid``, ``plastic``, ``gas`` or ``constant``.
+    kind : ``glass``, ``crystal``, ``gem``, ``liquid``, ``water``, ``plastic``, ``gas`` or ``constant``.
     source : where the index comes from; ``[key]`` resolves in ``docs/references.bib``.
     formula : index as a function of the wavelength in micrometres.
     valid_nm : range of wavelengths that the source covers, nm.
@@ -77,6 +77,16 @@ class Medium:
     def absorption_rgb_per_m(self) -> NDArray[np.float64]:
         """Extinction by absorption at the three channels, 1/m, (3,); 0 when clear."""
         return np.array(self.absorption_per_m, float)
+
+    @property
+    def scattering_rgb_per_m(self) -> NDArray[np.float64]:
+        """Extinction by scattering at the three channels, 1/m, (3,); 0 in all but a WaterBody."""
+        return np.zeros(3)
+
+    @property
+    def asymmetry(self) -> float:
+        """Mean cosine of the phase function; 0 in all but a WaterBody."""
+        return 0.0
 
     @property
     def is_uniaxial(self) -> bool:
