@@ -13,7 +13,7 @@ from pellucid.errors import SceneError
 from pellucid.frame import Frame
 from pellucid.gpu import Device, PassTimer
 from pellucid.gpu.targets import Targets
-from pellucid.scene import Camera, RefractiveVolume, ReliefSurface, Scene
+from pellucid.scene import Camera, RefractiveVolume, ReliefSurface, Scene, Water
 from pellucid.scene.checks import number
 from pellucid.surroundings import Surroundings
 from pellucid.techniques.eikonal.passes import EikonalTechnique
@@ -22,12 +22,17 @@ from pellucid.techniques.finish.accumulate import Accumulator
 from pellucid.techniques.finish.passes import Finish
 from pellucid.techniques.opaque.passes import Opaque
 from pellucid.techniques.relief.passes import ReliefTechnique
+from pellucid.techniques.water.passes import WaterTechnique
 
 if TYPE_CHECKING:
     from pellucid.techniques.eikonal.light import Irradiance
 
 # Which technique draws which kind of object. Adding one takes a folder and a line here.
-TECHNIQUES: dict[type, Any] = {ReliefSurface: ReliefTechnique, RefractiveVolume: EikonalTechnique}
+TECHNIQUES: dict[type, Any] = {
+    Water: WaterTechnique,
+    ReliefSurface: ReliefTechnique,
+    RefractiveVolume: EikonalTechnique,
+}
 
 # Of a picture of radiance in one buffer, as it is summed and read back.
 BYTES_PER_PIXEL = 16

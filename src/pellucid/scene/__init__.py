@@ -13,6 +13,8 @@ from pellucid.scene.refractive_volume import RefractiveVolume
 from pellucid.scene.relief_quality import ReliefQuality
 from pellucid.scene.relief_surface import ReliefLayer, ReliefSurface
 from pellucid.scene.scene import Scene
+from pellucid.scene.water import Water
+from pellucid.scene.water_quality import WaterQuality
 
 __all__ = [
     "GGX",
@@ -32,6 +34,8 @@ __all__ = [
     "Scene",
     "SceneObject",
     "TabulatedBRDF",
+    "Water",
+    "WaterQuality",
     "load_scene",
     "save_scene",
 ]

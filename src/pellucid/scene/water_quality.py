@@ -1,0 +1,146 @@
+"""How water is drawn: each step selectable, and named sets of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Self
+
+from pellucid.scene import checks
+from pellucid.scene.placement import Value, store
+
+REFRACTIONS = ("rays", "march", "iteration")
+REFLECTIONS = ("rays", "march", "point", "environment")
+FRESNELS = ("exact", "schlick")
+COLORS = ("physical", "mihalik")
+UNDERSIDES = ("exact", "mihalik")
+CAUSTICS = ("gpu", "cpu", "none")
+CAUSTIC_CAMERAS = ("refracted", "incident")
+CAUSTIC_INTERSECTIONS = ("march", "iteration")
+FALLBACKS = ("rays", "environment")
+TECHNIQUES = ("best", "fast", "mihalik")
+
+
+@dataclass(frozen=True)
+class WaterQuality(Value):
+    """What a ray that meets water sees, and what light does in it.
+
+    Parameters
+    ----------
+    refraction : what a refracted ray sees below the surface: the meshes themselves (``"rays"``), or a picture taken by
+        a camera of its own, met by a ``"march"`` through its depth, or by the ``"iteration"`` of [mihalik2008, 7.1].
+    reflection : likewise above it; ``"point"`` takes the picture a fixed way along the mirrored ray
+        [mihalik2008, eq. 6], ``"environment"`` sees no meshes.
+    steps : of the iteration, 1 to 64.
+    march_steps : of a march, 1 to 256.
+    texture_size : side of those pictures, texels, 16 to 8192.
+    field_of_view : how much more than the camera they show, 1 to 4 [mihalik2008, 5.3].
+    point_distance_m : way along the mirrored ray, metres > 0 (c of [mihalik2008, eq. 6]).
+    underside_distance_m : the same from below (m of [mihalik2008, eqs. 13, 15]).
+    fallback : what counts where a picture has no answer: ``"rays"`` to the meshes, or the ``"environment"``.
+    fresnel : ``"exact"``, or ``"schlick"`` with the exponent `schlick_power` > 0.
+    color : attenuation by what the water holds (``"physical"``), or towards one colour [mihalik2008, eqs. 4, 5].
+    underside : from below, ``"exact"`` refraction with its window, or the rays of [mihalik2008, eq. 12].
+    caustics : light that waves focus below them, worked out on the ``"gpu"``, the ``"cpu"``, or not at all.
+    caustic_size : side of the map of it, texels, 16 to 4096.
+    caustic_camera : looks along the ``"refracted"`` light or the ``"incident"`` one, as [mihalik2008, 8] does.
+    caustic_intersection : how its photons find the bottom.
+    shadows : meshes throw shadows below the water.
+    god_rays : beams in the water, from a march along each view ray.
+
+    Raises
+    ------
+    SceneError : a value out of range.
+    """
+
+    refraction: str = "rays"
+    reflection: str = "rays"
+    steps: int = 3
+    march_steps: int = 16
+    texture_size: int = 512
+    field_of_view: float = 1.5
+    point_distance_m: float = 1.0
+    underside_distance_m: float = 1.5
+    fallback: str = "rays"
+    fresnel: str = "exact"
+    schlick_power: float = 5.0
+    color: str = "physical"
+    underside: str = "exact"
+    caustics: str = "gpu"
+    caustic_size: int = 512
+    caustic_camera: str = "refracted"
+    caustic_intersection: str = "march"
+    shadows: bool = True
+    god_rays: bool = False
+
+    @classmethod
+    def of(cls, technique: str, **fields: Any) -> Self:
+        """The quality of a named technique, with some fields otherwise; for Water(technique="best").
+
+        Parameters
+        ----------
+        technique : ``"best"``, ``"fast"`` or ``"mihalik"``. fields : any field.
+        """
+        known = checks.choice("water_quality.technique", technique, TECHNIQUES)
+        return cls(**(_PRESETS[known] | fields))
+
+    def __post_init__(self) -> None:
+        for name, options in _CHOICES.items():
+            checks.choice(f"water_quality.{name}", getattr(self, name), options)
+        for name in ("shadows", "god_rays"):
+            checks.flag(f"water_quality.{name}", getattr(self, name))
+        for name, (low, high) in _WHOLE.items():
+            store(self, **{name: checks.integer(f"water_quality.{name}", getattr(self, name), low=low, high=high)})
+        store(
+            self,
+            field_of_view=checks.number("water_quality.field_of_view", self.field_of_view, low=1.0, high=4.0),
+            point_distance_m=_length("point_distance_m", self.point_distance_m),
+            underside_distance_m=_length("underside_distance_m", self.underside_distance_m),
+            schlick_power=checks.number("water_quality.schlick_power", self.schlick_power, low=0.0, exclusive=True),
+        )
+
+
+def _length(name: str, value: float) -> float:
+    return checks.number(f"water_quality.{name}", value, low=0.0, exclusive=True, unit="metres")
+
+
+_CHOICES = {
+    "refraction": REFRACTIONS,
+    "reflection": REFLECTIONS,
+    "fallback": FALLBACKS,
+    "fresnel": FRESNELS,
+    "color": COLORS,
+    "underside": UNDERSIDES,
+    "caustics": CAUSTICS,
+    "caustic_camera": CAUSTIC_CAMERAS,
+    "caustic_intersection": CAUSTIC_INTERSECTIONS,
+}
+_WHOLE = {"steps": (1, 64), "march_steps": (1, 256), "texture_size": (16, 8192), "caustic_size": (16, 4096)}
+_PRESETS: dict[str, dict[str, Any]] = {
+    "best": {},
+    "fast": {"refraction": "march", "reflection": "march", "fallback": "environment", "caustic_size": 256},
+    "mihalik": {
+        "refraction": "iteration",
+        "reflection": "point",
+        "fallback": "environment",
+        "fresnel": "schlick",
+        "color": "mihalik",
+        "underside": "mihalik",
+        "caustics": "cpu",
+        "caustic_camera": "incident",
+        "caustic_intersection": "iteration",
+    },
+}
+
+
+def quality_of(technique: str, quality: WaterQuality) -> WaterQuality:
+    """What a named technique makes of a quality: its own choice of every field that is left as it comes.
+
+    A field that differs from its default is the user's and stays.
+
+    Parameters
+    ----------
+    technique : one of ``TECHNIQUES``.
+    """
+    plain = WaterQuality()
+    changes = _PRESETS[technique]
+    return quality.replace(**{k: v for k, v in changes.items() if getattr(quality, k) == getattr(plain, k)})

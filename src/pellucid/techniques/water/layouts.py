@@ -1,0 +1,48 @@
+"""Memory layouts shared by NumPy and WGSL: each dtype here makes the WGSL struct of the same name."""
+
+from __future__ import annotations
+
+from pellucid.gpu.layout import struct
+
+WAVE_LAYERS = 8  # most that one body of water adds up
+
+WaterParams = struct(
+    [
+        ("low", "vec2f"),  # corners of the rectangle along x and z, metres
+        ("high", "vec2f"),
+        ("center", "vec2f"),  # of the rectangle, where tiles of waves are centred
+        ("level", "f32"),  # metres
+        ("wave_low", "f32"),  # lowest and highest that waves ever are over the level, metres
+        ("n_water", "vec3f"),  # red, green, blue; all alike without dispersion
+        ("n_outside", "f32"),
+        ("absorption", "vec3f"),  # 1/m
+        ("wave_high", "f32"),
+        ("scattering", "vec3f"),  # 1/m
+        ("asymmetry", "f32"),  # mean cosine of the scattering angle
+        ("color", "vec3f"),  # of deep water [mihalik2008, eq. 4]
+        ("clarity", "f32"),  # 1/m [mihalik2008, eq. 5]
+        ("wave_slope", "f32"),  # steepest slope of the moment
+        ("wave_cell_m", "f32"),  # side of a texel of the finest layer
+        ("foam", "f32"),  # 0 to 1
+        ("schlick_power", "f32"),
+        ("steps", "u32"),  # of the iteration [mihalik2008, 7.1]
+        ("march_steps", "u32"),
+        ("point_distance_m", "f32"),
+        ("underside_distance_m", "f32"),
+        ("wave_layers", "u32"),
+        ("time_s", "f32"),
+        ("wave_tiles", ("vec4f", WAVE_LAYERS)),  # by layer: width and depth in metres, 1 where it repeats, 0
+    ]
+)
+
+# Cameras whose pictures stand for the scene below and above the surface.
+WaterViews = struct(
+    [
+        ("refraction_from_world", "mat4x4f"),
+        ("reflection_from_world", "mat4x4f"),
+        ("refraction_position", "vec3f"),
+        ("refraction_near_m", "f32"),
+        ("reflection_position", "vec3f"),
+        ("reflection_near_m", "f32"),
+    ]
+)

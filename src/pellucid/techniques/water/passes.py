@@ -1,0 +1,198 @@
+"""The passes of water: what each pixel shows of it, then the radiance of that."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pellucid.gpu import Device, RenderPass
+from pellucid.gpu.modules import declared
+from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT, Targets
+from pellucid.scene.water_quality import COLORS, FRESNELS, REFLECTIONS, REFRACTIONS, WaterQuality, quality_of
+from pellucid.techniques.water.layouts import WaterParams, WaterViews
+from pellucid.techniques.water.prepare import WaveMaps, parameters, wave_maps
+
+if TYPE_CHECKING:
+    from pellucid.scene import Camera
+    from pellucid.scene.water import Water
+    from pellucid.surroundings import Surroundings
+
+HIT_FORMAT = "rgba32float"
+WAVE_NAMES = ("wave_map", "wave_sampler", "wave_moments", "wave_texture")
+NEAREST = ("water_hits", "opaque_color")
+
+
+@dataclass
+class Body:
+    """A body of water on the device.
+
+    Attributes
+    ----------
+    item : what the user described. quality : what its technique makes of its quality.
+    waves : its surface at `time_s`. version : counts changes of the waves.
+    bindings : resources of bind group 0 by their WGSL names.
+    """
+
+    item: Water
+    quality: WaterQuality
+    waves: WaveMaps
+    bindings: dict[str, Any]
+    time_s: float = 0.0
+    version: int = 0
+    params: np.ndarray = field(default_factory=lambda: np.zeros((), WaterParams))
+
+    @property
+    def constants(self) -> dict[str, float]:
+        """Override constants of all shaders of this body; none depends on what moves."""
+        quality = self.quality
+        return {
+            "WATER_REFRACTION": float(REFRACTIONS.index(quality.refraction)),
+            "WATER_REFLECTION": float(REFLECTIONS.index(quality.reflection)),
+            "WATER_FRESNEL": float(FRESNELS.index(quality.fresnel)),
+            "WATER_COLOR": float(COLORS.index(quality.color)),
+            "WATER_DISPERSION": float(self.item.dispersion and self.item.matter.is_dispersive),
+        }
+
+
+class WaterTechnique:
+    """Draws `Water` objects.
+
+    Attributes
+    ----------
+    bodies : what was prepared last.
+    """
+
+    def __init__(self, device: Device) -> None:
+        self.device = device
+        self.bodies: list[Body] = []
+        self._passes: dict[Any, RenderPass] = {}
+        self._targets: dict[str, Any] = {}
+        self._nothing = _absent(device)
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of GPU memory held."""
+        screen = sum(t.width * t.height * (4 if t.format == DEPTH_FORMAT else 16) for t in self._targets.values())
+        return screen + sum(body.waves.texels.nbytes + WaterParams.itemsize for body in self.bodies)
+
+    def prepare(self, items: Sequence[Water], surroundings: Surroundings) -> None:
+        """Make waves resident that are new, and write the parameters of every body of water."""
+        before = list(self.bodies)
+        self.bodies = [self._body(item, before, number) for number, item in enumerate(items)]
+        for body in self.bodies:
+            self._write(body)
+
+    def simulate(self, time_s: float) -> None:
+        """Move the waves to a time."""
+        for body in self.bodies:
+            if body.item.waves is not None and time_s != body.time_s:
+                body.waves, body.time_s = wave_maps(body.item, time_s), time_s
+                body.version += 1
+                self._upload(body)
+                self._write(body)
+
+    def illuminate(self, lights: Sequence[Any], surroundings: Surroundings) -> None:
+        """Light below the surface."""
+
+    def draw(
+        self, encoder: Any, targets: Targets, camera: Camera, surroundings: Surroundings, timer: Any = None
+    ) -> None:
+        """Draw every body of water into colour and depth, far to near."""
+        away = sorted(self.bodies, key=lambda body: _distance(body.item, camera), reverse=True)
+        for body in away:
+            self._draw(encoder, body, targets, surroundings, timer)
+
+    def _draw(self, encoder: Any, body: Body, targets: Targets, surroundings: Surroundings, timer: Any) -> None:
+        copies = {
+            "opaque_color": (targets.color, self._target("opaque_color", COLOR_FORMAT, targets.size)),
+            "opaque_depth": (targets.depth, self._target("opaque_depth", DEPTH_FORMAT, targets.size)),
+        }
+        for drawn, copy in copies.values():
+            size = (*targets.size, 1)
+            encoder.copy_texture_to_texture({"texture": drawn}, {"texture": copy}, size)
+        hits = self._target("water_hits", HIT_FORMAT, targets.size)
+        bound = {**self._nothing, **body.bindings, **surroundings.bindings}
+        bound |= {name: copy for name, (_, copy) in copies.items()}
+        self._pass("find", body.constants).run(
+            encoder,
+            color=[hits.create_view()],
+            depth=targets.depth_view,
+            clear=[(0.0, 0.0, 0.0, 0.0)],
+            bindings=bound,
+            timer=timer,
+            label="water search",
+        )
+        self._pass("compose", {**body.constants, **surroundings.shading_constants}).run(
+            encoder,
+            color=[targets.color_view],
+            bindings={**bound, "water_hits": hits},
+            timer=timer,
+            label="water shade",
+        )
+
+    def _body(self, item: Water, before: list[Body], number: int) -> Body:
+        quality = quality_of(item.technique, item.quality)
+        same = next((b for b in before if b.item.waves is item.waves), None)
+        if same is not None:
+            kept = {name: same.bindings[name] for name in WAVE_NAMES}
+            body = Body(item, quality, same.waves, kept, same.time_s, same.version)
+        else:
+            body = Body(item, quality, wave_maps(item, 0.0), {"wave_sampler": self.device.sampler("linear", "clamp")})
+            self._upload(body)
+        old = before[number].bindings if number < len(before) else {}
+        for name, layout in (("water", WaterParams), ("water_views", WaterViews)):
+            body.bindings[name] = old.get(name) or self.device.buffer(layout.itemsize, "uniform", name)
+        return body
+
+    def _upload(self, body: Body) -> None:
+        texels = body.waves.texels
+        texture = body.bindings.get("wave_texture")
+        layers, rows, columns = texels.shape[:3]
+        if texture is None or tuple(texture.size) != (columns, rows, layers):
+            kind = "rgba32float" if self.device.float32_filterable else "rgba16float"
+            texture = self.device.texture(size=(columns, rows), format=kind, layers=layers, label="waves")
+            body.bindings["wave_texture"] = texture
+            body.bindings["wave_map"] = texture.create_view(dimension="2d-array")
+            body.bindings["wave_moments"] = self._nothing["wave_moments"]
+        self.device.write_texture(texture, texels)
+
+    def _write(self, body: Body) -> None:
+        body.params = parameters(body.item, body.quality, body.waves, body.time_s)
+        self.device.write(body.bindings["water"], body.params.reshape(1))
+
+    def _pass(self, name: str, constants: dict[str, float]) -> RenderPass:
+        module = f"techniques/water/shaders/{name}"
+        used = declared(module, constants)
+        key = (name, *used.items())
+        if key not in self._passes:
+            options: dict[str, Any] = {"targets": (COLOR_FORMAT,)}
+            if name == "find":
+                options = {"targets": (HIT_FORMAT,), "depth": DEPTH_FORMAT, "depth_compare": "greater-equal"}
+            self._passes[key] = RenderPass(self.device, module, constants=used, nearest=NEAREST, **options)
+        return self._passes[key]
+
+    def _target(self, name: str, format: str, size: tuple[int, int]) -> Any:
+        kept = self._targets.get(name)
+        if kept is None or (kept.width, kept.height) != size:
+            usage = ("sample", "render", "copy")
+            self._targets[name] = kept = self.device.texture(size=size, format=format, usage=usage, label=name)
+        return kept
+
+
+def _distance(item: Water, camera: Camera) -> float:
+    """From the camera to the nearest point of the surface at rest."""
+    x, y, z = camera.position
+    low, high = item.bounds_m
+    nearest = np.clip((x, z), low, high)
+    return float(np.hypot(np.hypot(*(nearest - (x, z))), y - item.level))
+
+
+def _absent(device: Device) -> dict[str, Any]:
+    """One texel for every picture that a body of water may not have."""
+    image = device.texture(size=(1, 1), format="rgba16float", label="absent")
+    names = ("refraction_color", "refraction_depth", "reflection_color", "reflection_depth")
+    moments = {"wave_moments": image.create_view(dimension="2d-array")}
+    return {name: image for name in names} | moments | {"view_sampler": device.sampler("linear", "clamp")}

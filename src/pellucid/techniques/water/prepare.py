@@ -1,0 +1,128 @@
+"""Waves as arrays for the device, and the parameters of a body of water; no GPU."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pellucid.errors import SceneError
+from pellucid.techniques.water.layouts import WAVE_LAYERS, WaterParams
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from pellucid.scene.water import Water
+    from pellucid.scene.water_quality import WaterQuality
+
+
+@dataclass(frozen=True)
+class WaveMaps:
+    """The surface at a time, as the shaders read it.
+
+    Attributes
+    ----------
+    texels : (L, H, W, 4) float32: height m, dh/dx, dh/dz, fold; a layer a source.
+    tiles : (L, 4) float32: width and depth in metres, 1 where it repeats, 0.
+    limits_m : lowest and highest sum of heights at any time.
+    slope : steepest slope of the moment. cell_m : side of a texel of the finest layer.
+    """
+
+    texels: np.ndarray
+    tiles: np.ndarray
+    limits_m: tuple[float, float]
+    slope: float
+    cell_m: float
+
+
+def sources_of(waves: Any) -> Sequence[Any]:
+    """The layers of a source of waves: those that it adds up, or itself; none of a flat surface."""
+    if waves is None:
+        return ()
+    return tuple(getattr(waves, "layers", (waves,)))
+
+
+def wave_maps(item: Water, time_s: float) -> WaveMaps:
+    """The waves of a body of water at a time.
+
+    Raises
+    ------
+    SceneError : too many layers, or heights that are not finite.
+    """
+    sources = sources_of(item.waves)
+    if not sources:
+        flat = np.zeros((1, 1, 1, 4), np.float32)
+        flat[..., 3] = 1.0
+        return WaveMaps(flat, np.array([[1.0, 1.0, 1.0, 0.0]], np.float32), (0.0, 0.0), 0.0, 1.0)
+    if len(sources) > WAVE_LAYERS:
+        raise SceneError("water.waves", f"are {len(sources)} layers", f"add up at most {WAVE_LAYERS}")
+    rows, columns = (max(s.shape[axis] for s in sources) for axis in (0, 1))
+    layers = [_layer(source, time_s, (rows, columns)) for source in sources]
+    tiles = np.array([[*s.tile_m, _repeats(s), 0.0] for s in sources], np.float32)
+    low, high = (sum(float(s.limits_m[k]) for s in sources) for k in (0, 1))
+    slope = sum(float(np.hypot(t[..., 1], t[..., 2]).max()) for t in layers)
+    cell = min(min(s.tile_m[0] / s.shape[1], s.tile_m[1] / s.shape[0]) for s in sources)
+    return WaveMaps(np.stack(layers), tiles, (low, high), slope, float(cell))
+
+
+def _layer(source: Any, time_s: float, shape: tuple[int, int]) -> np.ndarray:
+    if hasattr(source, "surface"):
+        surface = source.surface(time_s)
+        heights, slopes, fold = surface.heights, surface.slopes, surface.fold
+    else:
+        heights, slopes, fold = source.advance(time_s), None, None
+    heights = np.asarray(heights, np.float32)
+    if not np.isfinite(heights).all():
+        raise SceneError("water.waves", "give heights that are not finite", "give finite heights in metres")
+    if slopes is None:
+        slopes = _slopes(heights, source)
+    fold = np.ones_like(heights) if fold is None else fold
+    texels = np.concatenate([heights[..., None], slopes, fold[..., None]], axis=2).astype(np.float32)
+    return texels if texels.shape[:2] == shape else _resized(texels, shape, _repeats(source))
+
+
+def _resized(texels: np.ndarray, shape: tuple[int, int], repeats: bool) -> np.ndarray:
+    """Linear between the centres of texels, along both axes."""
+    for axis, count in enumerate(shape):
+        have = texels.shape[axis]
+        at = (np.arange(count) + 0.5) * have / count - 0.5
+        first = np.floor(at).astype(int)
+        both = [(first + k) % have if repeats else np.clip(first + k, 0, have - 1) for k in (0, 1)]
+        share = np.expand_dims(at - first, tuple(k for k in range(3) if k != axis)).astype(np.float32)
+        texels = np.take(texels, both[0], axis) * (1.0 - share) + np.take(texels, both[1], axis) * share
+    return texels
+
+
+def _repeats(source: Any) -> bool:
+    return bool(getattr(source, "periodic", getattr(source, "boundary", "periodic") == "periodic"))
+
+
+def _slopes(heights: np.ndarray, source: Any) -> np.ndarray:
+    """(H, W, 2) dh/dx and dh/dz by central differences; z runs down the rows."""
+    cell = source.tile_m[0] / source.shape[1], source.tile_m[1] / source.shape[0]
+    padded = np.pad(heights.astype(np.float64), 1, mode="wrap" if _repeats(source) else "edge")
+    along_x = (padded[1:-1, 2:] - padded[1:-1, :-2]) / (2.0 * cell[0])
+    along_z = (padded[2:, 1:-1] - padded[:-2, 1:-1]) / (2.0 * cell[1])
+    return np.stack([along_x, along_z], axis=2)
+
+
+def parameters(item: Water, quality: WaterQuality, waves: WaveMaps, time_s: float) -> np.ndarray:
+    """() structured array of dtype `layouts.WaterParams`."""
+    p = np.zeros((), WaterParams)
+    p["low"], p["high"] = item.bounds_m
+    p["center"], p["level"] = item.center, item.level
+    p["wave_low"], p["wave_high"] = waves.limits_m
+    matter = item.matter
+    p["n_water"] = matter.n_rgb if item.dispersion else np.full(3, matter.n_d)
+    p["n_outside"] = item.ambient_n
+    p["absorption"], p["scattering"] = matter.absorption_rgb_per_m, matter.scattering_rgb_per_m
+    p["asymmetry"] = matter.asymmetry
+    p["color"], p["clarity"], p["foam"] = item.color, item.clarity_per_m, item.foam
+    p["wave_slope"], p["wave_cell_m"] = waves.slope, waves.cell_m
+    p["schlick_power"] = quality.schlick_power
+    p["steps"], p["march_steps"] = quality.steps, quality.march_steps
+    p["point_distance_m"], p["underside_distance_m"] = quality.point_distance_m, quality.underside_distance_m
+    p["wave_layers"], p["time_s"] = len(waves.tiles), time_s
+    p["wave_tiles"][: len(waves.tiles)] = waves.tiles
+    return p

@@ -1,0 +1,26 @@
+// The rectangle that water fills.
+//!import techniques/water/shaders/waves
+
+const WATER_FAR = 1e30;
+
+// Way along a ray to the sides of the rectangle: in, out; out < in where it passes
+fn water_sides(origin_ws: vec3f, direction_ws: vec3f) -> vec2f {
+    let tiny = vec2f(1e-20);
+    let d = select(direction_ws.xz, select(-tiny, tiny, direction_ws.xz >= vec2f(0.0)), abs(direction_ws.xz) < tiny);
+    let a = (water.low - origin_ws.xz) / d;
+    let b = (water.high - origin_ws.xz) / d;
+    let low = min(a, b);
+    let high = max(a, b);
+    return vec2f(max(low.x, low.y), min(high.x, high.y));
+}
+
+// Metres that a ray stays in the water, which ends at its sides and at its level
+fn water_way(p_ws: vec3f, direction_ws: vec3f) -> f32 {
+    let up = (water.level + water.wave_high - p_ws.y) / max(direction_ws.y, 1e-20);
+    return max(min(water_sides(p_ws, direction_ws).y, select(WATER_FAR, up, direction_ws.y > 0.0)), 0.0);
+}
+
+fn water_holds(p_ws: vec3f) -> bool {
+    let inside = all(p_ws.xz >= water.low) && all(p_ws.xz <= water.high);
+    return inside && p_ws.y - water.level < wave_height(p_ws.xz);
+}

@@ -1,0 +1,51 @@
+// First pass: what each pixel shows of the water, and how deep.
+//!import surroundings/shaders/full_picture
+//!import techniques/water/shaders/hit
+//!import techniques/water/shaders/surface
+
+struct WaterFound {
+    @location(0) record: vec4f,
+    @builtin(frag_depth) depth: f32,
+}
+
+@fragment
+fn fs_main(@builtin(position) position: vec4f) -> WaterFound {
+    let ray = camera_ray(position.xy);
+    let drawn = textureLoad(opaque_depth, vec2i(position.xy), 0);
+    let t_max = view_depth_m(drawn) / dot(ray.direction, frame.camera_forward);
+    let hit = water_first(ray.origin, ray.direction, t_max);
+    if hit.kind == WATER_NONE {
+        discard;
+    }
+    let depth = clamp(depth_of(ray.origin + hit.t * ray.direction), drawn, 1.0);
+    return WaterFound(water_record(hit), select(depth, drawn, hit.kind == WATER_FOG));
+}
+
+// What a ray of the camera meets first
+fn water_first(origin_ws: vec3f, direction_ws: vec3f, t_max: f32) -> WaterHit {
+    let up = vec3f(0.0, 1.0, 0.0);
+    let sides = water_sides(origin_ws, direction_ws);
+    let start = max(sides.x, 0.0);
+    let end = min(sides.y, t_max);
+    if start > end {
+        return WaterHit(WATER_NONE, 0.0, up);
+    }
+    let entry = origin_ws + start * direction_ws;
+    let under = entry.y - water.level < wave_height(entry.xz);
+    if under && sides.x > 0.0 {
+        return WaterHit(WATER_SIDE, start, water_side_normal(entry));
+    }
+    let meeting = meet_water_from(origin_ws, direction_ws, start, end, under);
+    if meeting.valid {
+        return WaterHit(select(WATER_ABOVE, WATER_BELOW, under), meeting.t, up);
+    }
+    return WaterHit(select(WATER_NONE, WATER_FOG, under), end, up);
+}
+
+// Out of the water, of the side that a point on the border is nearest to
+fn water_side_normal(p_ws: vec3f) -> vec3f {
+    let middle = 0.5 * (water.low + water.high);
+    let away = (p_ws.xz - middle) / (water.high - water.low);
+    let along_x = abs(away.x) > abs(away.y);
+    return select(vec3f(0.0, 0.0, sign(away.y)), vec3f(sign(away.x), 0.0, 0.0), along_x);
+}

@@ -1,0 +1,23 @@
+// What the search records for each pixel: kind, way to the surface, way within the water before it.
+
+const WATER_NONE = 0u;   // nothing of the water
+const WATER_ABOVE = 1u;  // its surface, from above
+const WATER_BELOW = 2u;  // its surface, from within
+const WATER_SIDE = 3u;   // an open border, from outside
+const WATER_FOG = 4u;    // from within, something else before the surface, or nothing
+
+struct WaterHit {
+    kind: u32,
+    t: f32,         // to the surface, metres
+    normal: vec3f,  // unit, of an open border out of the water; up elsewhere
+}
+
+fn water_record(hit: WaterHit) -> vec4f {
+    return vec4f(f32(hit.kind), hit.t, hit.normal.xz);
+}
+
+fn water_hit(record: vec4f) -> WaterHit {
+    let kind = u32(record.x + 0.5);
+    let normal = select(vec3f(0.0, 1.0, 0.0), vec3f(record.z, 0.0, record.w), kind == WATER_SIDE);
+    return WaterHit(kind, record.y, normal);
+}

@@ -1,0 +1,80 @@
+// Radiance that the surface of water sends to a viewer on either side of it.
+//!import optics/fresnel
+//!import optics/snell
+//!import techniques/water/shaders/glitter
+//!import techniques/water/shaders/hit
+//!import techniques/water/shaders/seen
+//!import techniques/water/shaders/surface
+//!import techniques/water/shaders/volume
+
+override WATER_FRESNEL: u32 = 0u;  // 0 exact, 1 Schlick's curve
+override WATER_DISPERSION: bool = false;
+
+const WATER_GRAZING = 1e-4;  // least cosine between normal and view
+
+// (1 - F) (n_i / n_t)^2 of what the refracted ray sees, F of what the mirrored one sees [born1999, 4.8.3]. All rays go
+// through one place.
+fn interface_radiance(hit: WaterHit, p_ws: vec3f, direction_ws: vec3f) -> vec3f {
+    let from_within = hit.kind == WATER_BELOW;
+    let at = wave_point(p_ws.xz, footprint_m(p_ws));
+    let up = normalize(vec3f(-at.slope.x, 1.0, -at.slope.y));
+    let outward = select(up, hit.normal, hit.kind == WATER_SIDE);
+    let n_ws = water_towards(select(outward, -outward, from_within), direction_ws);
+    let cos_i = -dot(n_ws, direction_ws);
+    let refracted_rays = select(1u, 3u, WATER_DISPERSION);
+    var radiance = vec3f(0.0);
+    var reflected = vec3f(0.0);
+    for (var k = 0u; k <= refracted_rays; k++) {
+        let mirrors = k == refracted_rays;
+        let n = select(water.n_water[min(k, 2u)], water.n_water.g, !WATER_DISPERSION || mirrors);
+        let n_i = select(water.n_outside, n, from_within);
+        let n_t = select(n, water.n_outside, from_within);
+        let channels = select(vec3f(1.0), vec3f(vec3u(k) == vec3u(0u, 1u, 2u)), WATER_DISPERSION);
+        let inside = refract(direction_ws, n_ws, n_i, n_t);
+        let share = water_reflectance(cos_i, n_i, n_t);
+        let ratio = n_i / n_t;
+        let weight = select(channels * (1.0 - share) * ratio * ratio, reflected, mirrors);
+        if !mirrors {
+            reflected += channels * share;
+        }
+        let below = mirrors == from_within;
+        let way = select(inside.direction, water_mirrored(direction_ws, n_ws, hit.kind), mirrors);
+        if any(weight > vec3f(0.0)) {
+            radiance += weight * water_look(p_ws, way, below);
+        }
+    }
+    return radiance + water_glitter(p_ws, n_ws, -direction_ws, at.variance);
+}
+
+// What a ray sees, through water where it is within
+fn water_look(p_ws: vec3f, direction_ws: vec3f, below: bool) -> vec3f {
+    let seen = seen_along(p_ws, direction_ws, below);
+    if !below {
+        return seen.radiance;
+    }
+    let path = water_path(p_ws, direction_ws, seen.distance_m);
+    return path.transmittance * seen.radiance + path.inscatter;
+}
+
+// A ray that a wave mirrors towards other waves is mirrored there once more, as if they were level
+fn water_mirrored(direction_ws: vec3f, n_ws: vec3f, kind: u32) -> vec3f {
+    let way = reflect(direction_ws, n_ws);
+    let upright = vec3f(way.x, select(abs(way.y), -abs(way.y), kind == WATER_BELOW), way.z);
+    return select(upright, way, kind == WATER_SIDE);
+}
+
+fn water_reflectance(cos_i: f32, n_i: f32, n_t: f32) -> f32 {
+    if WATER_FRESNEL == 1u {
+        let c = saturate(cos_i);
+        let q_squared = (n_t - n_i) * (n_t + n_i) + n_i * c * (n_i * c);
+        let cosine = select(c, sqrt(max(q_squared, 0.0)) / n_t, n_i > n_t);
+        return schlick(normal_reflectance(n_i, n_t), cosine, water.schlick_power);
+    }
+    return fresnel_dielectric(cos_i, n_i, n_t);
+}
+
+// A normal that leans away from the viewer is turned until it just faces them: slopes are those of a whole pixel
+fn water_towards(n_ws: vec3f, direction_ws: vec3f) -> vec3f {
+    let facing = -dot(n_ws, direction_ws);
+    return select(n_ws, normalize(n_ws - (WATER_GRAZING - facing) * direction_ws), facing < WATER_GRAZING);
+}

@@ -1,0 +1,20 @@
+// What rays see that leave the surface of water: the meshes themselves, or what is infinitely far away.
+//!import surroundings/shaders/radiance
+//!import techniques/water/shaders/seen_record
+//!import techniques/water/shaders/body
+
+// `below` for a ray within the water. What lies beyond its borders is seen as if the index fell off smoothly there:
+// rays go on straight, and radiance is n^2 times that outside.
+fn seen_rays(p_ws: vec3f, direction_ws: vec3f, below: bool) -> Seen {
+    let start = p_ws + frame.ray_epsilon_m * direction_ws;
+    let hit = trace_opaque(start, direction_ws, 1e30);
+    var radiance = environment_radiance(direction_ws);
+    if hit.valid {
+        radiance = shade_hit(hit, start, direction_ws);
+    }
+    let way = select(1e30, hit.t, hit.valid);
+    let inside = water_way(p_ws, direction_ws);
+    let leaves = below && way > inside;
+    let denser = water.n_water / water.n_outside;
+    return Seen(radiance * select(vec3f(1.0), denser * denser, leaves), min(way, inside), hit.valid);
+}
