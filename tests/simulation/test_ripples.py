@@ -24,6 +24,14 @@ def rainy(boundary: str, **options: Any) -> Ripples:
     return ripples
 
 
+def rowed(boundary: str) -> Ripples:
+    ripples = Ripples((37, 52), CELL, 0.3, 0.5, boundary)
+    ripples.push([(-0.05, 0.0), (0.04, 0.02), (0.06, 0.02)], 0.006, 0.002, speed_m_s=0.5, time_s=0.02)
+    ripples.push([(0.01, 0.01)], 0.004, 0.001, times_s=[0.1, 0.4])
+    ripples.drop(0.0, 0.0, 0.004, 0.003, time_s=0.1)
+    return ripples
+
+
 def shown(device: Device, texture: Any) -> np.ndarray:
     return device.read_texture(texture)[..., 0]
 
@@ -36,6 +44,15 @@ def test_both_twins_have_the_same_heights(boundary: str, device: Device) -> None
         wanted = ripples.advance(time)
         highest = np.abs(wanted - 0.003).max()
         np.testing.assert_allclose(shown(device, simulation.advance(time)), wanted, atol=1e-5 * max(highest, 1e-3))
+
+
+@pytest.mark.parametrize("boundary", ["reflect", "periodic"])
+def test_what_floats_presses_alike_on_both(boundary: str, device: Device) -> None:
+    ripples = rowed(boundary)
+    simulation = RippleSimulation(device, ripples)
+    for time in (0.05, 0.16, 0.5, 0.12):
+        wanted = ripples.advance(time)
+        np.testing.assert_allclose(shown(device, simulation.advance(time)), wanted, atol=2e-8)
 
 
 def test_an_earlier_time_and_a_later_drop_are_followed(device: Device) -> None:

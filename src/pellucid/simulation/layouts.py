@@ -29,3 +29,15 @@ RippleDent = struct(
         ("periodic", "u32"),
     ]
 )
+
+RipplePush = struct(
+    [
+        ("centre_m", "vec2f"),
+        ("size", "vec2u"),
+        ("first", "vec2u"),  # column and row of the cells that it reaches
+        ("count", "vec2u"),  # they go on beyond the last column and row with the first
+        ("cell_m", "f32"),
+        ("radius_m", "f32"),
+        ("depth_m", "f32"),
+    ]
+)

@@ -8,7 +8,7 @@ import numpy as np
 
 from pellucid.fields.waves import Disturbance, Ripples
 from pellucid.gpu import ComputeKernel, Device
-from pellucid.simulation.layouts import RippleDent, RippleParams
+from pellucid.simulation.layouts import RippleDent, RippleParams, RipplePush
 
 #: Cells of a workgroup, in a row: neighbours in memory are three times as fast as squares on the software driver.
 ROW = 64
@@ -41,6 +41,7 @@ class RippleSimulation:
         self._velocity = device.buffer(cells, label="ripple velocity")
         self._friction = device.buffer(ripples.friction.astype(np.float32), label="ripple friction")
         self._params = device.buffer(RippleParams.itemsize, "uniform", "ripple parameters")
+        self._pressed: Any = None  # made for the first thing that floats
         self._step, self._show, self._dent = (_kernel(device, name) for name in ("step", "show", "dent"))
         self._groups = (-(-columns // ROW), -(-rows // STRIP), 1)
         self._cells = (-(-columns // ROW), rows, 1)
@@ -71,9 +72,9 @@ class RippleSimulation:
             self._done, self._applied = 0, []
         for state, disturbance in plan.dents:
             self._steps_to(state, encoder)
-            self._press(disturbance, encoder)
+            self._dent_by(disturbance, encoder)
         self._steps_to(plan.last, encoder)
-        self._show.run(self._groups, self._bindings(heights=self.heights), encoder)
+        self._show.run(self._groups, self._bindings(self._press(encoder), heights=self.heights), encoder)
         self.ripples.time_s = float(time_s)  # what falls in without a time does so now
         if own:
             self.device.wgpu.queue.submit([encoder.finish()])
@@ -81,11 +82,35 @@ class RippleSimulation:
 
     def _steps_to(self, state: int, encoder: Any) -> None:
         for _ in range(state - self._done):
-            self._step.run(self._groups, self._bindings(following=self._states[1]), encoder)
+            bound = self._bindings(self._press(encoder), following=self._states[1])
+            self._step.run(self._groups, bound, encoder)
             self._states.reverse()
-        self._done = state
+            self._done += 1
 
-    def _press(self, disturbance: Disturbance, encoder: Any) -> None:
+    def _press(self, encoder: Any) -> Any:
+        """The displacement, with what floats on it on top."""
+        pressing = self.ripples.pressing(self._done)
+        if not pressing:
+            return self._states[0]
+        if self._pressed is None:
+            self._pressed = self.device.buffer(self._states[0].size, label="ripple displacement, pressed")
+        encoder.copy_buffer_to_buffer(self._states[0], 0, self._pressed, 0, self._states[0].size)
+        for push, x_m, z_m, depth_m in pressing:
+            given = np.zeros((), RipplePush)
+            rows, columns = self.ripples.reached(push, x_m, z_m)
+            if not (len(rows) and len(columns)):
+                continue
+            size, outside = np.array(self.ripples.shape[::-1]), np.array([columns[0], rows[0]])
+            first = outside % size  # whole turns further in a periodic pool, its centre too
+            given["centre_m"] = np.array([x_m, z_m]) + (first - outside) * self.ripples.cell_m
+            given["size"], given["first"], given["count"] = size, first, (len(columns), len(rows))
+            given["cell_m"], given["radius_m"], given["depth_m"] = self.ripples.cell_m, push.radius_m, depth_m
+            bound = {"push": self.device.buffer(given, "uniform", "ripple push"), "pressed": self._pressed}
+            kernel = _kernel(self.device, "push")
+            kernel.run((-(-len(columns) // ROW), len(rows), 1), bound, encoder)
+        return self._pressed
+
+    def _dent_by(self, disturbance: Disturbance, encoder: Any) -> None:
         dent = np.zeros((), RippleDent)
         dent["centre_m"] = disturbance.x_m, disturbance.z_m
         dent["size"] = self.ripples.shape[::-1]
@@ -97,10 +122,10 @@ class RippleSimulation:
         self._dent.run(self._cells, given, encoder)
         self._applied.append(disturbance)
 
-    def _bindings(self, **more: Any) -> dict[str, Any]:
+    def _bindings(self, pressed: Any, **more: Any) -> dict[str, Any]:
         return {
             "ripples": self._params, "displacement": self._states[0], "velocity": self._velocity,
-            "friction": self._friction, **more,
+            "friction": self._friction, "pressed": pressed, **more,
         }  # fmt: skip
 
     def _constant_params(self) -> np.ndarray:

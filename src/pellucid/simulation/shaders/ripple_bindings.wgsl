@@ -6,6 +6,8 @@
 @group(0) @binding(1) var<storage, read> displacement: array<f32>;
 @group(0) @binding(2) var<storage, read_write> velocity: array<f32>;
 @group(0) @binding(3) var<storage, read> friction: array<f32>;
+// Displacement with what floats on the water on top; the displacement itself where nothing does.
+@group(0) @binding(6) var<storage, read> pressed: array<f32>;
 
 const RIPPLE_STRIP = 8u;  // cells of a column that one invocation follows: sums of a row serve five of them (ripples.STRIP)
 
@@ -34,13 +36,13 @@ fn ripple_columns(column: u32) -> RippleColumns {
     );
 }
 
-// Sums of a row's displacements at the columns 0, 1 and 2 away; a row may be up to two outside
+// Sums of what is in a row at the columns 0, 1 and 2 away; a row may be up to two outside
 fn ripple_sums(row: i32, columns: RippleColumns) -> vec3f {
     let first = ripple_line(row, ripples.size.y) * ripples.size.x;
     return vec3f(
-        displacement[first + columns.middle],
-        displacement[first + columns.left] + displacement[first + columns.right],
-        displacement[first + columns.left_2] + displacement[first + columns.right_2],
+        pressed[first + columns.middle],
+        pressed[first + columns.left] + pressed[first + columns.right],
+        pressed[first + columns.left_2] + pressed[first + columns.right_2],
     );
 }
 
@@ -66,7 +68,7 @@ fn ripple_rows_next(rows: RippleRows, row: i32, columns: RippleColumns) -> Rippl
     return RippleRows(rows.above, rows.here, rows.below, rows.below_2, ripple_sums(row + 2, columns));
 }
 
-// c^2 L' u with L' = L - (h^2 - c^2 dt^2)/12 L L, L the nine-point Laplacian [shubin1987]: fields/waves.py, stencil
+// c^2 L' u with L' = L - (h^2 - c^2 dt^2)/12 L L, L the nine-point Laplacian [shubin1987]: fields/waves/ripples.py, stencil
 fn ripple_acceleration(rows: RippleRows) -> f32 {
     let far = rows.above_2 + rows.below_2;
     let near = rows.above + rows.below;

@@ -1,4 +1,4 @@
-// A dent with a rim around it: u -= strength (k - s) exp(-s), s = (distance / radius)^2; fields/waves.py, dent.
+// A dent with a rim around it: u -= strength (k - s) exp(-s), s = (distance / radius)^2; fields/waves/ripples.py, dent.
 
 //!struct RippleDent from simulation.layouts
 

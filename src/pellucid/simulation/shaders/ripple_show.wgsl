@@ -16,7 +16,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let before = velocity[cell];
         let after = ripple_next_velocity(rows, cell);
         let s = ripples.rest_s;
-        let u = rows.here.x + s * 0.5 * (before + after) + s * s / (2.0 * ripples.step_s) * (after - before);
+        let u = displacement[cell] + s * 0.5 * (before + after) + s * s / (2.0 * ripples.step_s) * (after - before);
         let height = ripples.level_m + clamp(u, -ripples.limit_m, ripples.limit_m);
         textureStore(heights, vec2u(id.x, row), vec4f(height, 0.0, 0.0, 0.0));
     }

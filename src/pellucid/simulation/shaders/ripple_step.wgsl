@@ -15,6 +15,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let cell = row * ripples.size.x + id.x;
         let w = ripple_next_velocity(rows, cell);
         velocity[cell] = w;
-        following[cell] = rows.here.x + ripples.step_s * w;
+        following[cell] = displacement[cell] + ripples.step_s * w;
     }
 }

@@ -210,3 +210,77 @@ def test_drops_and_times_are_checked() -> None:
             ripples.advance(time)
     with pytest.raises(SceneError, match=r"^dt: "):
         ripples.step(-0.1)
+
+
+def test_what_floats_still_lies_in_its_dent() -> None:
+    """At rest u + q is the same everywhere: a dent of the depth that was given, filled up elsewhere by its volume."""
+    ripples = pool((49, 49), damping=20.0)
+    ripples.push([(0.0, 0.0)], 0.012, 0.003, times_s=[0.0, 9.0])
+    heights = ripples.advance(4.0)
+    dent = float(heights.max() - heights.min())
+    assert dent == pytest.approx(0.003, rel=1e-3)
+    assert np.unravel_index(heights.argmin(), heights.shape) == (24, 24)
+
+
+@pytest.mark.parametrize("boundary", ["reflect", "periodic"])
+def test_what_moves_keeps_the_mass_and_its_waves_stay_bounded(boundary: str) -> None:
+    ripples = pool(boundary=boundary)
+    ripples.push([(-0.05, 0.0), (0.05, 0.01), (0.09, 0.01)], 0.008, 0.002, speed_m_s=0.45)
+    end = ripples.pushes[0].times_s[-1]
+    highest = max(float(np.abs(ripples.advance(share * end)).max()) for share in np.linspace(0.1, 1.0, 9))
+    moved = np.abs(ripples.displacement).sum() * CELL**2
+    assert abs(ripples.volume_m3) < 1e-10 * moved and 0.0005 < highest < 0.01
+    ripples.advance(end + ripples.step_s)
+    energy = ripples.energy
+    ripples.advance(end + 3.0)  # nothing presses any more, one long step
+    assert ripples.energy == pytest.approx(energy, rel=1e-9)
+
+
+def test_what_is_faster_than_waves_draws_a_wedge() -> None:
+    """Half angle arcsin(c / v): behind something at twice the speed of waves, crests lie along 30 degrees."""
+    ripples = pool((160, 240), boundary="absorb", limit_m=1.0)
+    ripples.push([(-0.2, 0.0), (0.2, 0.0)], 0.006, 0.002, speed_m_s=2 * SPEED)
+    heights = ripples.advance(0.35 / (2 * SPEED)).astype(float)
+    x, z = ripples.centres()
+    lines = [int(np.argmin(np.abs(x - at))) for at in (0.0, 0.04)]
+    crests = [abs(float(z[np.argmax(heights[:80, column])])) for column in lines]
+    assert np.degrees(np.arctan2(crests[0] - crests[1], x[lines[1]] - x[lines[0]])) == pytest.approx(30.0, abs=1.5)
+
+
+def test_pushes_are_the_same_however_they_are_watched() -> None:
+    def rowed() -> Ripples:
+        ripples = pool((32, 40), dtype=np.float32, boundary="periodic")
+        ripples.push([(-0.03, 0.0), (0.05, 0.02)], 0.006, 0.002, time_s=0.05)
+        return ripples
+
+    straight, often = rowed(), rowed()
+    wanted = straight.advance(0.2)
+    for time in (0.01, 0.06, 0.0601, 0.3):
+        often.advance(time)
+    np.testing.assert_array_equal(often.advance(0.2), wanted)
+
+
+def test_slopes_of_ripples_belong_to_their_heights_and_drops_renew_them() -> None:
+    ripples = pool((32, 32), boundary="periodic")
+    ripples.drop(0.0, 0.0, 0.008, 0.004)
+    before = ripples.surface(0.1)
+    assert ripples.surface(0.1) is before
+    h = before.heights
+    np.testing.assert_allclose(before.slopes[..., 0], (np.roll(h, -1, 1) - np.roll(h, 1, 1)) / (2 * CELL), atol=1e-6)
+    np.testing.assert_allclose(before.slopes[..., 1], (np.roll(h, -1, 0) - np.roll(h, 1, 0)) / (2 * CELL), atol=1e-6)
+    ripples.drop(0.0, 0.0, 0.008, 0.004)
+    assert np.abs(ripples.surface(0.1).heights - h).max() > 0.001
+
+
+@pytest.mark.parametrize(
+    ("given", "options", "field"),
+    [(([0.0, 1.0], 0.01, 0.01), {}, "path_m"), (([(0, 0)], 0.01, 0.01), {}, "path_m"),
+     (([(0, 0), (np.nan, 1)], 0.01, 0.01), {}, "path_m"), (([(0, 0), (1, 1)], 1e-4, 0.01), {}, "radius_m"),
+     (([(0, 0), (1, 1)], 0.01, 0.01), {"times_s": [1.0, 0.5]}, "times_s"),
+     (([(0, 0), (1, 1)], 0.01, 0.01), {"times_s": [0, 1], "time_s": 1.0}, "times_s"),
+     (([(0, 0), (1, 1)], 0.01, 0.01), {"speed_m_s": 0.0}, "speed_m_s"),
+     (([(0, 0), (1, 1)], 0.01, 0.01), {"time_s": -1.0}, "time_s")],
+)  # fmt: skip
+def test_pushes_are_checked(given: tuple[Any, ...], options: dict[str, Any], field: str) -> None:
+    with pytest.raises(SceneError, match=rf"^{field}: "):
+        pool().push(*given, **options)

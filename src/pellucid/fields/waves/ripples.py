@@ -4,19 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from pellucid.errors import SceneError
+from pellucid.fields.waves import arguments
+from pellucid.fields.waves.arguments import number
+from pellucid.fields.waves.source import WaveSource, WaveSurface, difference_slopes
 
 BOUNDARIES = ("reflect", "periodic", "absorb")
 #: c dt / h of the steps that are taken. The scheme is stable below 0.8 (see `Ripples`).
 COURANT = 0.5
 #: Width of the zone that absorbs, as a share of the shorter side.
 ABSORBING_SHARE = 0.15
-LARGEST = 4096
+#: Beyond so many radii a push is nothing: exp(-16) of its strength.
+REACH = 4.0
 MOST_STEPS = 1_000_000
 
 Array = npt.NDArray[Any]
@@ -34,6 +38,28 @@ class Disturbance:
 
 
 @dataclass(frozen=True)
+class Push:
+    """Something that floats, such as a boat or a ball, and its way; see `Ripples.push`.
+
+    times_s : when it is at the places `path_m` (x, z); it goes straight between them, and is eased in and out over
+    `ease_s`.
+    """
+
+    times_s: tuple[float, ...]
+    path_m: tuple[tuple[float, float], ...]
+    radius_m: float
+    strength_m: float
+    ease_s: float
+
+    def at(self, time_s: float) -> tuple[float, float, float]:
+        """x, z and the depth of its dent at rest at a time, metres; the depth is 0 before and after."""
+        x, z = (float(np.interp(time_s, self.times_s, line)) for line in zip(*self.path_m, strict=True))
+        near = min(time_s - self.times_s[0], self.times_s[-1] - time_s) / self.ease_s
+        share = min(max(near, 0.0), 1.0)
+        return x, z, self.strength_m * share * share * (3.0 - 2.0 * share)
+
+
+@dataclass(frozen=True)
 class Plan:
     """How to get to a time.
 
@@ -47,7 +73,7 @@ class Plan:
     rest_s: float
 
 
-class Ripples:
+class Ripples(WaveSource):
     """Small waves that all travel at one speed, as on shallow water, on a grid of square cells.
 
     **Scheme.** Velocities w live half a step between displacements u: w += dt (c^2 L' u - 2 d w), u += dt w. With the
@@ -78,6 +104,8 @@ class Ripples:
         A parameter is out of its range.
     """
 
+    kind: ClassVar[str] = "ripples"
+
     def __init__(
         self,
         shape: tuple[int, int],
@@ -89,28 +117,30 @@ class Ripples:
         limit_m: float = 0.02,
         dtype: Any = np.float32,
     ) -> None:
-        self.shape = _shape(shape)
-        self.cell_m = _number("cell_m", cell_m, low=1e-9)
-        self.speed_m_s = _number("speed_m_s", speed_m_s, low=1e-9)
-        self.damping = _number("damping", damping, low=0.0)
-        if boundary not in BOUNDARIES:
-            raise SceneError("boundary", f"is {boundary!r}", f"use one of {', '.join(BOUNDARIES)}")
+        self.shape = arguments.grid(shape)
+        self.cell_m = number("cell_m", cell_m, low=1e-9)
+        self.speed_m_s = number("speed_m_s", speed_m_s, low=1e-9)
+        self.damping = number("damping", damping, low=0.0)
         if np.dtype(dtype) not in (np.dtype(np.float32), np.dtype(np.float64)):
             raise SceneError("dtype", f"is {dtype!r}", "use float32 or float64")
-        self.boundary = boundary
-        self.level_m = _number("level_m", level_m)
-        self.limit_m = _number("limit_m", limit_m, low=1e-9)
+        self.boundary = arguments.choice("boundary", boundary, BOUNDARIES)
+        self.periodic = boundary == "periodic"
+        self.level_m = number("level_m", level_m)
+        self.limit_m = number("limit_m", limit_m, low=1e-9)
         self.dtype = np.dtype(dtype)
         self.step_s = COURANT * self.cell_m / self.speed_m_s
         self.friction = (self.damping + _absorption(self)).astype(self.dtype)
+        drag = (self.friction * self.step_s).astype(self.dtype)
+        self._keep, self._gain = (1 - drag) / (1 + drag), self.dtype.type(self.step_s) / (1 + drag)
         self.time_s = 0.0
         self.disturbances: list[Disturbance] = []
+        self.pushes: list[Push] = []
         self.displacement: Array = np.zeros(self.shape, self.dtype)
         self.velocity: Array = np.zeros(self.shape, self.dtype)
         self.steps_done = 0
         self.applied: list[Disturbance] = []
 
-    # ---- what a relief asks for ------------------------------------------------------------------------------
+    # ---- what a relief or water asks for ---------------------------------------------------------------------
 
     @property
     def tile_m(self) -> tuple[float, float]:
@@ -144,9 +174,16 @@ class Ripples:
         heights = self.level_m + self._part(plan.rest_s)
         return np.clip(heights, *self.limits_m).astype(np.float32)
 
+    def _surface(self, time_s: float) -> WaveSurface:
+        heights = self.advance(time_s)
+        return WaveSurface(heights, difference_slopes(heights, self.cell, self.periodic))
+
+    def _key(self, time_s: float) -> Any:
+        return time_s, len(self.disturbances), len(self.pushes)
+
     def step(self, dt: float) -> npt.NDArray[np.float32]:
         """Go on by `dt` seconds, of any length, and give the heights."""
-        return self.advance(self.time_s + _number("dt", dt, low=0.0))
+        return self.advance(self.time_s + number("dt", dt, low=0.0))
 
     def drop(
         self, x_m: float, z_m: float, radius_m: float, strength_m: float, time_s: float | None = None
@@ -165,14 +202,63 @@ class Ripples:
         SceneError : it is outside of the water, smaller than a cell, or before now.
         """
         width, depth = self.tile_m
-        x = _number("x_m", x_m, low=-0.5 * width, high=0.5 * width)
-        z = _number("z_m", z_m, low=-0.5 * depth, high=0.5 * depth)
-        radius = _number("radius_m", radius_m, low=self.cell_m)
-        when = self.time_s if time_s is None else _number("time_s", time_s, low=self.time_s)
-        dropped = Disturbance(when, x, z, radius, _number("strength_m", strength_m))
+        x = number("x_m", x_m, low=-0.5 * width, high=0.5 * width)
+        z = number("z_m", z_m, low=-0.5 * depth, high=0.5 * depth)
+        radius = number("radius_m", radius_m, low=self.cell_m)
+        when = self.time_s if time_s is None else number("time_s", time_s, low=self.time_s)
+        dropped = Disturbance(when, x, z, radius, number("strength_m", strength_m))
         self.disturbances.append(dropped)
         self.disturbances.sort(key=lambda d: d.time_s)
         return dropped
+
+    def push(
+        self,
+        path_m: npt.ArrayLike,
+        radius_m: float,
+        strength_m: float,
+        speed_m_s: float | None = None,
+        time_s: float | None = None,
+        times_s: npt.ArrayLike | None = None,
+    ) -> Push:
+        """Something floats along a path, a boat or a ball: it presses on the water, u_tt = c^2 lap(u + q).
+
+        q = strength exp(-(distance / radius)^2) is what it weighs, over density and gravity. At rest it lies in a dent
+        of that depth; under way it draws waves behind it, and a wedge of half angle arcsin(c / v) when it is faster
+        than they are. The Laplacian keeps the mass.
+
+        Parameters
+        ----------
+        path_m : (N, 2) places (x, z), metres from the middle; N >= 2, or one place with two `times_s`.
+        radius_m : metres, at least a cell. strength_m : depth of the dent at rest, metres.
+        speed_m_s : along the path, that of the waves if not given. time_s : when it starts; now if not given.
+        times_s : (N,) when it is where, rising, in place of both.
+
+        Raises
+        ------
+        SceneError : a path of another shape, a time before now, times that do not rise, a radius below a cell.
+        """
+        radius, strength = number("radius_m", radius_m, low=self.cell_m), number("strength_m", strength_m)
+        path = _path(path_m)
+        if times_s is None:
+            speed = self.speed_m_s if speed_m_s is None else number("speed_m_s", speed_m_s, low=1e-9)
+            start = self.time_s if time_s is None else number("time_s", time_s, low=self.time_s)
+            ways = np.hypot(*np.diff(path, axis=0).T)
+            if not len(ways) or not ways.min() > 0.0:
+                raise SceneError("path_m", "stands still", "give places apart from each other, or times_s")
+            times = start + np.concatenate([[0.0], np.cumsum(ways)]) / speed
+        else:
+            if speed_m_s is not None or time_s is not None:
+                raise SceneError("times_s", "are given with speed_m_s or time_s", "choose one of them")
+            times = arguments.numbers("times_s", times_s, low=self.time_s)
+            path = np.repeat(path, 2, axis=0) if len(path) == 1 and len(times) == 2 else path
+            if len(times) != len(path) or not (np.diff(times) > 0.0).all():
+                raise SceneError("times_s", f"are {len(times)} for {len(path)} places", "give one a place, rising")
+        # It sinks in while a wave crosses it, so that it begins without a splash.
+        ease = min(2.0 * radius / self.speed_m_s, 0.5 * float(times[-1] - times[0]))
+        places = tuple((float(x), float(z)) for x, z in path)
+        pushed = Push(tuple(float(t) for t in times), places, radius, strength, ease)
+        self.pushes.append(pushed)
+        return pushed
 
     # ---- what the GPU does likewise --------------------------------------------------------------------------
 
@@ -183,7 +269,7 @@ class Ripples:
         ------
         SceneError : the time is negative or not finite, or takes too many steps.
         """
-        time_s = _number("time_s", time_s, low=0.0)
+        time_s = number("time_s", time_s, low=0.0)
         last = int(self._states(time_s))
         if last > MOST_STEPS:
             raise SceneError("time_s", f"is {time_s:g}", f"takes more than {MOST_STEPS} steps of {self.step_s:g} s")
@@ -210,13 +296,30 @@ class Ripples:
 
     def _distance2(self, disturbance: Disturbance) -> Array:
         """(H, W) squared distance in radii."""
-        rows, columns = self.shape
-        x = (np.arange(columns) + 0.5 - 0.5 * columns) * self.cell_m - disturbance.x_m
-        z = (np.arange(rows) + 0.5 - 0.5 * rows) * self.cell_m - disturbance.z_m
-        if self.boundary == "periodic":
+        x, z = self.centres()
+        x, z = x - disturbance.x_m, z - disturbance.z_m
+        if self.periodic:
             width, depth = self.tile_m
             x, z = x - width * np.round(x / width), z - depth * np.round(z / depth)
         return np.asarray((z[:, None] ** 2 + x**2) / disturbance.radius_m**2)
+
+    def pressing(self, state: int) -> list[tuple[Push, float, float, float]]:
+        """What presses at a state: pushes with their x, z and depth of dent, metres."""
+        time_s = state * self.step_s
+        found = [(push, *push.at(time_s)) for push in self.pushes if push.times_s[0] < time_s < push.times_s[-1]]
+        return [one for one in found if one[3] != 0.0]
+
+    def reached(self, push: Push, x_m: float, z_m: float) -> tuple[range, range]:
+        """Rows and columns within `REACH` radii of a push at a place; they may lie outside, to be repeated."""
+        lines = []
+        for count, at, size in zip(self.shape, (z_m, x_m), reversed(self.tile_m), strict=True):
+            middle, far = (at / size + 0.5) * count - 0.5, REACH * push.radius_m / self.cell_m
+            first, last = int(np.ceil(middle - far)), int(np.floor(middle + far))
+            if self.periodic:  # once around at most
+                lines.append(range(first, min(last + 1, first + count)))
+            else:
+                lines.append(range(max(first, 0), min(last + 1, count)))
+        return lines[0], lines[1]
 
     def stencil(self) -> npt.NDArray[np.float64]:
         """(5, 5) weights of c^2 L', 1/s^2."""
@@ -258,26 +361,51 @@ class Ripples:
         return (self.cell_m**2 - (self.speed_m_s * self.step_s) ** 2) / 12.0
 
     def _laplacian(self, u: Array) -> Array:
-        p = np.pad(u, 1, mode="wrap" if self.boundary == "periodic" else "symmetric")
-        sides = p[1:-1, :-2] + p[1:-1, 2:] + p[:-2, 1:-1] + p[2:, 1:-1]
-        corners = p[:-2, :-2] + p[:-2, 2:] + p[2:, :-2] + p[2:, 2:]
-        return np.asarray((4.0 * sides + corners - 20.0 * u) * (1.0 / (6.0 * self.cell_m**2)))
+        p = np.pad(u, 1, mode="wrap" if self.periodic else "symmetric")
+        near, here = p[:-2] + p[2:], p[1:-1]
+        across = near + 4.0 * here
+        out = across[:, :-2] + across[:, 2:]
+        near *= 4.0
+        out += near[:, 1:-1]
+        out -= 20.0 * u
+        out *= 1.0 / (6.0 * self.cell_m**2)
+        return np.asarray(out)
 
     def _acceleration(self, u: Array) -> Array:
-        once = self._laplacian(u)
-        return np.asarray(self.speed_m_s**2 * (once - self._correction() * self._laplacian(once)))
+        out = self._laplacian(u)
+        twice = self._laplacian(out)
+        twice *= self._correction()
+        out -= twice
+        out *= self.speed_m_s**2
+        return out
+
+    def _pressed(self) -> Array:
+        """Displacement, and on top of it what presses at the last state."""
+        pressing = self.pressing(self.steps_done)
+        if not pressing:
+            return self.displacement
+        total = self.displacement.copy()
+        for push, x_m, z_m, depth_m in pressing:
+            rows, columns = (np.array(line, np.intp) for line in self.reached(push, x_m, z_m))
+            (width, depth), (count_z, count_x) = self.tile_m, self.shape
+            s_x = (((columns + 0.5) / count_x - 0.5) * width - x_m) / push.radius_m
+            s_z = (((rows + 0.5) / count_z - 0.5) * depth - z_m) / push.radius_m
+            bell = depth_m * np.exp(-(s_z**2))[:, None] * np.exp(-(s_x**2))
+            total[np.ix_(rows % count_z, columns % count_x)] += bell.astype(self.dtype)
+        return total
 
     def _next_velocity(self) -> Array:
         # Damping by the mean of both velocities: it never adds energy, however strong it is.
-        drag = self.friction * self.dtype.type(self.step_s)
-        push = self.dtype.type(self.step_s) * self._acceleration(self.displacement).astype(self.dtype)
-        return np.asarray((self.velocity * (1 - drag) + push) / (1 + drag))
+        out = self._acceleration(self._pressed())
+        out *= self._gain
+        out += self._keep * self.velocity
+        return out
 
     def _steps_to(self, state: int) -> None:
         for _ in range(state - self.steps_done):
             self.velocity = self._next_velocity()
             self.displacement = self.displacement + self.dtype.type(self.step_s) * self.velocity
-        self.steps_done = state
+            self.steps_done += 1
 
     def _part(self, dt: float) -> Array:
         """Displacement `dt` after the last state, less than a step; at a whole step it is the next state."""
@@ -299,20 +427,11 @@ def _absorption(ripples: Ripples) -> Array:
     return np.asarray(1.5 * np.log(1000.0) * ripples.speed_m_s / (zone * ripples.cell_m) * deep**2)
 
 
-def _shape(shape: Any) -> tuple[int, int]:
+def _path(path_m: npt.ArrayLike) -> npt.NDArray[np.float64]:
     try:
-        rows, columns = shape
-        whole = all(isinstance(n, int | np.integer) and not isinstance(n, bool) for n in (rows, columns))
+        path = np.asarray(path_m, np.float64)
     except (TypeError, ValueError):
-        whole, rows, columns = False, 0, 0
-    if not whole or not (5 <= rows <= LARGEST and 5 <= columns <= LARGEST):
-        raise SceneError("shape", f"is {shape!r}", f"give (rows, columns), whole numbers from 5 to {LARGEST}")
-    return int(rows), int(columns)
-
-
-def _number(name: str, value: Any, low: float = -np.inf, high: float = np.inf) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
-        raise SceneError(name, f"is {value!r}", "give a number")
-    if not (np.isfinite(value) and low <= value <= high):
-        raise SceneError(name, f"is {float(value):g}", f"use {low:g} to {high:g}")
-    return float(value)
+        path = np.zeros(0)
+    if path.ndim != 2 or path.shape[1] != 2 or not len(path) or not np.isfinite(path).all():
+        raise SceneError("path_m", f"has shape {path.shape}", "give (N, 2) finite places (x, z)")
+    return path

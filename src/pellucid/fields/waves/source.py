@@ -1,0 +1,166 @@
+"""What every kind of waves gives: heights, and the slopes that belong to them, at a time."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from pellucid.fields.waves import arguments
+
+Singles = npt.NDArray[np.float32]
+Array = npt.NDArray[Any]
+
+
+@dataclass(frozen=True, eq=False)
+class WaveSurface:
+    """A water surface at one time, on a grid of cell centres.
+
+    Attributes
+    ----------
+    heights : (H, W) float32, metres.
+    slopes : (H, W, 2) float32, dh/dx and dh/dz.
+    fold : (H, W) float32, area of a patch of water over its area at rest, the Jacobian of the horizontal displacement
+        [tessendorf2001, 4.6]: 1 for calm water, small at crests, negative where waves break. None: 1 everywhere.
+    """
+
+    heights: Singles
+    slopes: Singles
+    fold: Singles | None = None
+
+    def __post_init__(self) -> None:
+        for array in (self.heights, self.slopes, self.fold):
+            if array is not None:
+                array.setflags(write=False)  # the same surface is given to everyone who asks
+
+    @property
+    def normals(self) -> Singles:
+        """(H, W, 3) float32 unit vectors (-dh/dx, 1, -dh/dz) / length."""
+        up = np.ones(self.heights.shape, np.float32)
+        n = np.stack([-self.slopes[..., 0], up, -self.slopes[..., 1]], axis=-1)
+        return np.asarray(n / np.linalg.norm(n, axis=-1, keepdims=True))
+
+
+class WaveSource(ABC):
+    """Water in motion over a rectangle, `fields.dynamic.DynamicHeights`.
+
+    x and z are metres from its middle, x along the rows and z down them: the cell (j, i) has its centre at
+    x = (i + 1/2) W_m / W - W_m / 2, likewise z. What is given for a time does not depend on the times asked before.
+
+    Attributes
+    ----------
+    shape : (H, W) cells. tile_m : (along x, along z), metres.
+    periodic : whether waves go on beyond the rectangle as on its other side; else they stay as at its border.
+    """
+
+    kind: ClassVar[str] = ""
+    shape: tuple[int, int]
+    periodic: bool
+
+    _kept: tuple[Any, WaveSurface] | None = None
+
+    @property
+    @abstractmethod
+    def tile_m(self) -> tuple[float, float]:
+        """Size along x and z, metres."""
+
+    @property
+    @abstractmethod
+    def limits_m(self) -> tuple[float, float]:
+        """Lowest and highest height that is ever given, metres."""
+
+    @property
+    def short_slopes(self) -> tuple[float, float, float]:
+        """Mean squares (dh/dx)^2, dh/dx dh/dz, (dh/dz)^2 of the waves that are too short for the grid."""
+        return 0.0, 0.0, 0.0
+
+    @property
+    def cell(self) -> tuple[float, float]:
+        """Edges of a cell along x and z, metres."""
+        width, depth = self.tile_m
+        return width / self.shape[1], depth / self.shape[0]
+
+    def surface(self, time_s: float) -> WaveSurface:
+        """Heights and slopes at a time, seconds from the start; the same object as long as nothing changes.
+
+        Raises
+        ------
+        SceneError : the time is negative or not finite.
+        """
+        key = self._key(arguments.moment(time_s))
+        if self._kept is None or self._kept[0] != key:
+            self._kept = key, self._surface(float(time_s))
+        return self._kept[1]
+
+    def advance(self, time_s: float) -> Singles:
+        """(H, W) float32 heights at a time, metres."""
+        return self.surface(time_s).heights
+
+    def at(self, x_m: npt.ArrayLike, z_m: npt.ArrayLike, time_s: float) -> tuple[Singles, Singles]:
+        """Height (...) and slopes (..., 2) at places (...), bilinear between cell centres; what floats asks this.
+
+        Parameters
+        ----------
+        x_m, z_m : metres from the middle.
+        """
+        found = self.surface(time_s)
+        stacked = np.concatenate([found.heights[..., None], found.slopes], axis=-1)
+        values = bilinear(stacked, *self.places(x_m, z_m), self.periodic)
+        return values[..., 0], values[..., 1:]
+
+    def places(self, x_m: npt.ArrayLike, z_m: npt.ArrayLike) -> tuple[Array, Array]:
+        """Columns and rows, whole at the centres of cells, of places in metres from the middle."""
+        (width, depth), (rows, columns) = self.tile_m, self.shape
+        x, z = np.asarray(x_m), np.asarray(z_m)
+        return (x / width + 0.5) * columns - 0.5, (z / depth + 0.5) * rows - 0.5
+
+    def centres(self) -> tuple[Array, Array]:
+        """(W,) x and (H,) z of the centres of cells, metres from the middle."""
+        (width, depth), (rows, columns) = self.tile_m, self.shape
+        return ((np.arange(columns) + 0.5) / columns - 0.5) * width, ((np.arange(rows) + 0.5) / rows - 0.5) * depth
+
+    @abstractmethod
+    def _surface(self, time_s: float) -> WaveSurface:
+        """What `surface` gives, worked out anew."""
+
+    def _key(self, time_s: float) -> Any:
+        """What decides whether the last surface is still true."""
+        return time_s
+
+
+def difference_slopes(heights: Array, cell: tuple[float, float], periodic: bool) -> Singles:
+    """(H, W, 2) central differences of heights (H, W), one-sided at a border that does not repeat."""
+    slopes = np.empty((*heights.shape, 2), np.float32)
+    for axis, size in ((1, cell[0]), (0, cell[1])):
+        h, out = np.moveaxis(heights, axis, 0), np.moveaxis(slopes[..., 1 - axis], axis, 0)
+        np.subtract(h[2:], h[:-2], out=out[1:-1], casting="same_kind")
+        if periodic:
+            out[0], out[-1] = h[1] - h[-1], h[0] - h[-2]
+        else:
+            out[0], out[-1] = 2.0 * (h[1] - h[0]), 2.0 * (h[-1] - h[-2])
+    slopes *= np.array([0.5 / cell[0], 0.5 / cell[1]], np.float32)
+    return slopes
+
+
+def bilinear(values: Array, column: Array, row: Array, periodic: bool) -> Singles:
+    """(..., C) values between the centres of cells, of (H, W, C) values and (...) columns and rows."""
+    rows, columns, channels = values.shape
+    flat = values.reshape(-1, channels)
+    i, j = np.floor(column), np.floor(row)
+    a, b = (np.asarray(part, np.float32)[..., None] for part in (column - i, row - j))
+    i, j = i.astype(np.intp), j.astype(np.intp)
+    if periodic:
+        left, right = np.remainder(i, columns), np.remainder(i + 1, columns)
+        top, bottom = np.remainder(j, rows) * columns, np.remainder(j + 1, rows) * columns
+    else:
+        left, right = np.clip(i, 0, columns - 1), np.clip(i + 1, 0, columns - 1)
+        top, bottom = np.clip(j, 0, rows - 1) * columns, np.clip(j + 1, 0, rows - 1) * columns
+    upper = flat.take(top + left, 0)
+    upper += a * (flat.take(top + right, 0) - upper)
+    lower = flat.take(bottom + left, 0)
+    lower += a * (flat.take(bottom + right, 0) - lower)
+    upper += b * (lower - upper)
+    return np.asarray(upper, np.float32)
