@@ -134,7 +134,7 @@ class WaveSource(ABC):
 def difference_slopes(heights: Array, cell: tuple[float, float], periodic: bool) -> Singles:
     """(H, W, 2) central differences of heights (H, W), one-sided at a border that does not repeat."""
     slopes = np.empty((*heights.shape, 2), np.float32)
-    for axis, size in ((1, cell[0]), (0, cell[1])):
+    for axis in (1, 0):
         h, out = np.moveaxis(heights, axis, 0), np.moveaxis(slopes[..., 1 - axis], axis, 0)
         np.subtract(h[2:], h[:-2], out=out[1:-1], casting="same_kind")
         if periodic:
