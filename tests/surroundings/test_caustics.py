@@ -214,7 +214,7 @@ def test_maps_are_forgotten_when_a_mesh_moves_and_the_picture_is_as_before(devic
     land(fresh, beam((0, 1, 0), count=9, **DOWN))
     moved = Mesh.plane(2.0, position=(0, 0.1, 0))
     fresh.prepare(_scene_of(moved), (64, 48))
-    assert not fresh.caustics.active and fresh.shading_constants == {"CAUSTICS": 0.0}
+    assert not fresh.caustics.active and fresh.shading_constants["CAUSTICS"] == 0.0
 
 
 def _scene_of(*meshes: Mesh) -> object:

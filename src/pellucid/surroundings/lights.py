@@ -83,6 +83,16 @@ def shadow_order(records: np.ndarray) -> list[int]:
     return [int(i) for i in mapped[np.argsort(records["shadow_layer"][mapped])]]
 
 
+def lamp_constants(records: np.ndarray) -> dict[str, float]:
+    """Override constants of shaders/lights.wgsl: which kinds of lamps there are, and whether any has a shadow map."""
+    far = records["kind"] == LIGHT_DIRECTIONAL
+    return {
+        "LAMPS_FAR": float(far.any()),
+        "LAMPS_NEAR": float((~far).any()),
+        "SHADOW_MAPS": float((far & (records["shadow_layer"] >= 0)).any()),
+    }
+
+
 def casts_shadow(mesh: int, corners: Sequence[np.ndarray], towards: np.ndarray) -> bool:
     """Whether a mesh can shadow anything: a flat one with all others on its lit side cannot.
 

@@ -10,7 +10,7 @@ import numpy as np
 from pellucid.surroundings import environment, geometry, lights, maps
 from pellucid.surroundings.camera import View, view_of, write_view
 from pellucid.surroundings.caustics import CausticMaps
-from pellucid.surroundings.layouts import MATERIAL_CASTS_SHADOW, MATERIAL_UNSEEN, FrameParams
+from pellucid.surroundings.layouts import MATERIAL_CASTS_SHADOW, MATERIAL_UNSEEN, FrameParams, Light
 
 if TYPE_CHECKING:
     from pellucid.gpu import Device
@@ -62,6 +62,7 @@ class Surroundings:
         self._map_size = 1
         self._shown = 0
         self._casters: list[list[bool]] = []
+        self._lamp_kinds = lights.lamp_constants(np.zeros(0, Light))
         self.caustics = CausticMaps(device, self._resources)
 
     @property
@@ -86,8 +87,8 @@ class Surroundings:
 
     @property
     def shading_constants(self) -> dict[str, float]:
-        """Override constants of every shader that shades meshes."""
-        return {"CAUSTICS": float(self.caustics.active)}
+        """Override constants of every shader that shades meshes; they tell kinds of lamps, not where one is."""
+        return {"CAUSTICS": float(self.caustics.active), **self._lamp_kinds}
 
     @property
     def frame(self) -> np.ndarray:
@@ -182,6 +183,7 @@ class Surroundings:
         records, self._casters = lights.light_records(lamps, self._geometry.corners)
         self._store("lights", records)
         self.shadow_lights = lights.shadow_order(records)
+        self._lamp_kinds = lights.lamp_constants(records[: len(lamps)])
         self._prepare_shadows(len(self._casters))
         return True
 

@@ -2,6 +2,10 @@
 //!import surroundings/shaders/raycast
 //!import surroundings/shaders/shadow
 
+// Which lamps there are. A driver that executes every branch spares what no lamp of the scene takes: a ray a sample.
+override LAMPS_FAR: bool = true;
+override LAMPS_NEAR: bool = true;
+
 const LIGHT_DIRECTIONAL = 0u;
 const LIGHT_POINT = 1u;
 const LIGHT_AREA = 2u;
@@ -19,14 +23,17 @@ fn light_count() -> u32 {
 }
 
 fn light_sample_count(light: u32) -> u32 {
-    return select(1u, AREA_STRATA * AREA_STRATA, lights[light].kind == LIGHT_AREA);
+    return select(1u, AREA_STRATA * AREA_STRATA, LAMPS_NEAR && lights[light].kind == LIGHT_AREA);
 }
 
 fn sample_light(light: u32, index: u32, p_ws: vec3f, n_ws: vec3f) -> LightSample {
-    if lights[light].kind == LIGHT_DIRECTIONAL {
+    if LAMPS_FAR && (!LAMPS_NEAR || lights[light].kind == LIGHT_DIRECTIONAL) {
         return sample_directional_light(light, p_ws, n_ws);
     }
-    return sample_near_light(light, index, p_ws, n_ws);
+    if LAMPS_NEAR {
+        return sample_near_light(light, index, p_ws, n_ws);
+    }
+    return LightSample(n_ws, vec3f(0.0));
 }
 
 fn sample_directional_light(light: u32, p_ws: vec3f, n_ws: vec3f) -> LightSample {

@@ -1,13 +1,15 @@
 // How much of a directional light reaches a point, from its shadow map.
 //!import surroundings/shaders/bindings
 
+override SHADOW_MAPS: bool = true;  // whether some lamp has one
+
 const SHADOW_REACH_TEXELS = 2.2;  // half the diagonal of the filter below
 
 // Mean of 3 x 3 texels by four bilinear comparisons [reeves1987]. The point is moved along the normal by just as
 // much as the filter's reach can lie before a tilted surface, which leaves no acne and the least possible gap.
 fn shadow_visibility(light: u32, p_ws: vec3f, n_ws: vec3f) -> f32 {
     let layer = lights[light].shadow_layer;
-    if layer < 0 {
+    if !SHADOW_MAPS || layer < 0 {
         return 1.0;
     }
     let cosine = dot(n_ws, lights[light].direction);

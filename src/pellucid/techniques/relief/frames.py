@@ -7,9 +7,10 @@ from functools import cached_property
 
 import numpy as np
 
-from pellucid.techniques.relief.layouts import ReliefVertex
+from pellucid.techniques.relief.layouts import VERTEX_TEXELS, ReliefVertex
 
 FLATNESS = 1e-4  # of the size of a mesh, and of its normals
+VERTICES_A_ROW = 1638  # of the texture of vertices: as many whole ones as every device allows
 BORDER_SLACK = 1e-4  # of the extent of the texture coordinates
 
 
@@ -72,6 +73,15 @@ def hull_of(vertices: np.ndarray, faces: np.ndarray, normals: np.ndarray, uvs: n
     sides = [float((area * np.linalg.norm(t[faces].mean(axis=1), axis=1)).sum()) for t in (tangent, bitangent)]
     low, high = _clip(uvs, faces, borders)
     return Hull(_joined(top, _walls(corner, borders)), (sides[0], sides[1]), low, high)
+
+
+def vertex_texels(vertices: np.ndarray) -> np.ndarray:
+    """Vertices as an image, (rows, columns, 4) float32: records one after the other, none over the end of a row."""
+    columns = min(len(vertices), VERTICES_A_ROW)
+    rows = -(-len(vertices) // columns)
+    padded = np.zeros(rows * columns, ReliefVertex)
+    padded[: len(vertices)] = vertices
+    return padded.view(np.float32).reshape(rows, columns * VERTEX_TEXELS, 4)
 
 
 def tangents(

@@ -6,6 +6,9 @@ from pellucid.gpu.layout import struct
 
 DIFFUSE_ENTRIES = 32  # rows of the table of light that goes diffusely through the interface, see diffuse.py
 
+NEAREST = ("height_bounds", "cone_map", "relief_vertices")  # textures of 32 bits that are read texel by texel
+VERTEX_TEXELS = 5  # of four numbers, that a ReliefVertex takes
+
 # A corner of a triangle of the hull: where it lies on the mesh, and the frame there. Directions are those of the
 # object; tangents are metres of the object a tile.
 ReliefVertex = struct(

@@ -12,7 +12,7 @@ from pellucid.gpu.kernel import ComputeKernel
 from pellucid.gpu.modules import declared
 from pellucid.scene import DirectionalLight
 from pellucid.scene.relief_quality import SHADOWS, ReliefQuality
-from pellucid.techniques.relief.layouts import ReliefBeam, ReliefParams, ReliefPlane
+from pellucid.techniques.relief.layouts import NEAREST, ReliefBeam, ReliefParams, ReliefPlane
 
 if TYPE_CHECKING:
     from pellucid.gpu import Device
@@ -87,7 +87,7 @@ class LightPasses:
         used = declared(module, constants)
         key = (name, *used.items())
         if key not in self._kernels:
-            self._kernels[key] = ComputeKernel(self.device, module, constants=used, nearest=("height_bounds",))
+            self._kernels[key] = ComputeKernel(self.device, module, constants=used, nearest=NEAREST)
         self._kernels[key].run(groups, bound)
 
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from pellucid.fields.heightfield import ABSENT_M, bounds_pyramid
 from pellucid.gpu import ComputeKernel, Device
 from pellucid.scene.relief_quality import SEARCHES, ReliefQuality
-from pellucid.techniques.relief.layouts import ReliefAsked, ReliefParams, ReliefVertex
+from pellucid.techniques.relief.layouts import NEAREST, ReliefAsked, ReliefParams
 from pellucid.techniques.relief.reference import ReliefRays
 from pellucid.techniques.relief.search_maps import drawable_heights, search_bindings, upload
 
@@ -52,7 +52,7 @@ class ReliefMeeting:
             "RELIEF_LOOKS_FOR": float(LOOKS_FOR.index(looks_for)),
         }
         module = "techniques/relief/shaders/meet"
-        self.kernel = ComputeKernel(device, module, constants=constants, nearest=("height_bounds", "cone_map"))
+        self.kernel = ComputeKernel(device, module, constants=constants, nearest=NEAREST)
 
     def __call__(self, rays: ReliefRays, reach: npt.ArrayLike) -> tuple[Array, Array]:
         """t (N,), inf where nothing is met, and layer (N,): 0 none, 1 translucent, 2 solid."""
@@ -81,10 +81,11 @@ class ReliefMeeting:
         for level, values in enumerate(bounds):
             device.write_texture(pyramid, values, mip=level)
         unused = {
-            "relief_vertices": device.buffer(ReliefVertex.itemsize, label="absent"),
             "surface_sampler": device.sampler("linear", "repeat"),
             "distance_map": volume,
-            **dict.fromkeys(("solid_surface", "translucent_surface", "cone_map", "complexity_map"), nothing),
+            **dict.fromkeys(
+                ("relief_vertices", "solid_surface", "translucent_surface", "cone_map", "complexity_map"), nothing
+            ),
         }
         return {
             **unused,

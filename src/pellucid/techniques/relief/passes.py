@@ -15,8 +15,8 @@ from pellucid.scene.placement import placement_matrix
 from pellucid.scene.relief_quality import REFLECTIONS, REFRACTIONS, SEARCHES, STEPS, ReliefQuality, quality_of
 from pellucid.techniques.relief.cube import SceneCube
 from pellucid.techniques.relief.diffuse import diffuse_tables
-from pellucid.techniques.relief.frames import Hull
-from pellucid.techniques.relief.layouts import ReliefParams
+from pellucid.techniques.relief.frames import Hull, vertex_texels
+from pellucid.techniques.relief.layouts import NEAREST, ReliefParams
 from pellucid.techniques.relief.light import LightMaps, LightPasses, light_constants, mapped_lights, plane_of
 from pellucid.techniques.relief.moving import MovingMaps, device_moves
 from pellucid.techniques.relief.prepare import (
@@ -250,7 +250,8 @@ class ReliefTechnique:
         if same:
             bindings["relief_vertices"] = same.bindings["relief_vertices"]
         else:
-            bindings["relief_vertices"] = self.device.buffer(shape.vertices, "storage", "relief vertices")
+            texels = vertex_texels(shape.vertices)
+            bindings["relief_vertices"] = self.device.texture(texels, format="rgba32float", label="relief vertices")
         quality = quality_of(item.technique, item.quality)
         if _moves(item) and quality.search in ("cone", "distance"):
             # Bounds are new in a moment; maps of free space are not, and find nothing that bounds do not.
@@ -312,9 +313,7 @@ class ReliefTechnique:
             options: dict[str, Any] = {"targets": (COLOR_FORMAT,)}
             if name == "find":
                 options = {"targets": (HIT_FORMAT,), "depth": DEPTH_FORMAT, "depth_compare": "greater", "cull": "back"}
-            self._passes[key] = RenderPass(
-                self.device, module, constants=used, nearest=("height_bounds", "cone_map"), **options
-            )
+            self._passes[key] = RenderPass(self.device, module, constants=used, nearest=NEAREST, **options)
         return self._passes[key]
 
     def _hit_target(self, size: tuple[int, int]) -> Any:

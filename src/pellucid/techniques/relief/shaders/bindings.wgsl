@@ -10,7 +10,7 @@
 @group(0) @binding(5) var translucent_surface: texture_2d<f32>;
 @group(0) @binding(6) var color_map: texture_2d<f32>;
 @group(0) @binding(7) var surface_sampler: sampler;
-@group(0) @binding(8) var<storage, read> relief_vertices: array<ReliefVertex>;  // three a triangle
+@group(0) @binding(8) var relief_vertices: texture_2d<f32>;  // three a triangle, five texels each
 @group(0) @binding(9) var relief_hits: texture_2d<u32>;
 @group(0) @binding(10) var distance_map: texture_3d<f32>;
 @group(0) @binding(11) var cone_map: texture_2d<f32>;

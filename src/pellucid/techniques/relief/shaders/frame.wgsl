@@ -1,6 +1,7 @@
 // The frame of a relief at a place: how directions of the world become tiles and heights.
 //!import techniques/relief/shaders/bindings
 
+const RELIEF_VERTEX_TEXELS = 5u;  // layouts.VERTEX_TEXELS
 const RELIEF_FLAT = 1e-5;  // 1/m; what bends less counts as flat
 
 struct ReliefFrame {
@@ -34,29 +35,42 @@ struct ReliefPoint {
     is_cut: bool,      // on the cut at an open border, not on the layer's surface
 }
 
-fn relief_vertex_ws(index: u32) -> vec3f {
-    let at = relief_vertices[index].position + relief_vertex_height(index) * relief_vertices[index].normal;
+// A corner of the hull, from its texels: a software driver reads buffers at places that differ one by one
+fn relief_vertex(index: u32) -> ReliefVertex {
+    let across = textureDimensions(relief_vertices).x;
+    let first = index * RELIEF_VERTEX_TEXELS;
+    let at = vec2u(first % across, first / across);
+    let p = textureLoad(relief_vertices, at, 0);
+    let n = textureLoad(relief_vertices, at + vec2u(1u, 0u), 0);
+    let tangent = textureLoad(relief_vertices, at + vec2u(2u, 0u), 0);
+    let bitangent = textureLoad(relief_vertices, at + vec2u(3u, 0u), 0);
+    let curvature = textureLoad(relief_vertices, at + vec2u(4u, 0u), 0).xyz;
+    return ReliefVertex(p.xyz, p.w, n.xyz, n.w, tangent.xyz, tangent.w, bitangent.xyz, bitangent.w, curvature);
+}
+
+fn relief_vertex_ws(corner: ReliefVertex) -> vec3f {
+    let at = corner.position + relief_level_height(corner.level) * corner.normal;
     return (relief.world_from_object * vec4f(at, 1.0)).xyz;
 }
 
-fn relief_vertex_height(index: u32) -> f32 {
-    return mix(relief.hull_low, relief.hull_high, relief_vertices[index].level);
+fn relief_level_height(level: f32) -> f32 {
+    return mix(relief.hull_low, relief.hull_high, level);
 }
 
 // The frame where weights (b.x, b.y) of the second and third corner lie on a triangle of the hull
 fn relief_frame(triangle: u32, b: vec2f) -> ReliefFrame {
     let k = 3u * triangle;
     let w = vec3f(1.0 - b.x - b.y, b);
-    let a0 = relief_vertices[k];
-    let a1 = relief_vertices[k + 1u];
-    let a2 = relief_vertices[k + 2u];
-    let corners = mat3x3f(relief_vertex_ws(k), relief_vertex_ws(k + 1u), relief_vertex_ws(k + 2u));
+    let a0 = relief_vertex(k);
+    let a1 = relief_vertex(k + 1u);
+    let a2 = relief_vertex(k + 2u);
+    let corners = mat3x3f(relief_vertex_ws(a0), relief_vertex_ws(a1), relief_vertex_ws(a2));
     let turn = mat3x3f(relief.world_from_object[0].xyz, relief.world_from_object[1].xyz, relief.world_from_object[2].xyz);
     let n = normalize(turn * (w.x * a0.normal + w.y * a1.normal + w.z * a2.normal));
     let tangent = turn * (w.x * a0.tangent + w.y * a1.tangent + w.z * a2.tangent);
     let bitangent = turn * (w.x * a0.bitangent + w.y * a1.bitangent + w.z * a2.bitangent);
     let form = w.x * a0.curvature + w.y * a1.curvature + w.z * a2.curvature;
-    let h = w.x * relief_vertex_height(k) + w.y * relief_vertex_height(k + 1u) + w.z * relief_vertex_height(k + 2u);
+    let h = relief_level_height(dot(w, vec3f(a0.level, a1.level, a2.level)));
     let uv = w.x * vec2f(a0.u, a0.v) + w.y * vec2f(a1.u, a1.v) + w.z * vec2f(a2.u, a2.v);
     var wall = vec3f(0.0);
     if a0.wall > 0.5 {

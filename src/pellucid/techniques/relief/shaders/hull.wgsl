@@ -12,5 +12,5 @@ struct HullVarying {
 fn vs_main(@builtin(vertex_index) vertex: u32) -> HullVarying {
     let corner = vertex % 3u;
     let b = vec2f(select(0.0, 1.0, corner == 1u), select(0.0, 1.0, corner == 2u));
-    return HullVarying(frame.clip_from_world * vec4f(relief_vertex_ws(vertex), 1.0), b, vertex / 3u);
+    return HullVarying(frame.clip_from_world * vec4f(relief_vertex_ws(relief_vertex(vertex)), 1.0), b, vertex / 3u);
 }
