@@ -13,7 +13,7 @@ from pellucid.errors import SceneError
 from pellucid.frame import Frame
 from pellucid.gpu import Device, PassTimer
 from pellucid.gpu.targets import Targets
-from pellucid.scene import Camera, RefractiveVolume, ReliefSurface, Scene, Water
+from pellucid.scene import Camera, RefractiveSheet, RefractiveVolume, ReliefSurface, Scene, Water
 from pellucid.scene.checks import number
 from pellucid.surroundings import Surroundings
 from pellucid.techniques.eikonal.passes import EikonalTechnique
@@ -22,6 +22,7 @@ from pellucid.techniques.finish.accumulate import Accumulator
 from pellucid.techniques.finish.passes import Finish
 from pellucid.techniques.opaque.passes import Opaque
 from pellucid.techniques.relief.passes import ReliefTechnique
+from pellucid.techniques.sheet.passes import SheetTechnique
 from pellucid.techniques.water.passes import WaterTechnique
 
 if TYPE_CHECKING:
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 
 # Which technique draws which kind of object. Adding one takes a folder and a line here.
 TECHNIQUES: dict[type, Any] = {
+    RefractiveSheet: SheetTechnique,
     Water: WaterTechnique,
     ReliefSurface: ReliefTechnique,
     RefractiveVolume: EikonalTechnique,

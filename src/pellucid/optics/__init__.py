@@ -1,6 +1,16 @@
 """The laws of light, as vectorised float64 functions; each file has a WGSL twin of the same stem."""
 
-from pellucid.optics import attenuation, colour, crystal, dispersion, eikonal, fresnel, phase, snell
+from pellucid.optics import (
+    attenuation,
+    colour,
+    crystal,
+    dispersion,
+    eikonal,
+    fresnel,
+    phase,
+    refraction_factor,
+    snell,
+)
 from pellucid.optics.attenuation import extinction_from_half_distance, transmittance, water_colour
 from pellucid.optics.colour import (
     into_gamut,
@@ -51,6 +61,7 @@ from pellucid.optics.fresnel import (
     schlick,
 )
 from pellucid.optics.phase import henyey_greenstein
+from pellucid.optics.refraction_factor import exact_factor, fitted_factor, opposite_factor, refract_by_factor
 from pellucid.optics.snell import RefractResult, critical_angle, reflect, refract
 
 __all__ = [
@@ -77,6 +88,7 @@ __all__ = [
     "euler_momentum",
     "euler_position",
     "euler_step",
+    "exact_factor",
     "extinction_from_half_distance",
     "extraordinary_extinction",
     "extraordinary_field",
@@ -84,6 +96,7 @@ __all__ = [
     "extraordinary_momentum",
     "extraordinary_ray",
     "extraordinary_wave",
+    "fitted_factor",
     "fresnel",
     "fresnel_dielectric",
     "fresnel_polarised",
@@ -97,11 +110,14 @@ __all__ = [
     "momentum_of_ray",
     "normal_flux",
     "normal_reflectance",
+    "opposite_factor",
     "ordinary_field",
     "ordinary_wave",
     "phase",
     "reflect",
     "refract",
+    "refract_by_factor",
+    "refraction_factor",
     "schlick",
     "sellmeier",
     "snell",

@@ -9,10 +9,12 @@ from pellucid.scene.lights import AreaLight, DirectionalLight, PointLight
 from pellucid.scene.mesh import Mesh
 from pellucid.scene.placement import Light, SceneObject
 from pellucid.scene.quality import Quality
+from pellucid.scene.refractive_sheet import RefractiveSheet
 from pellucid.scene.refractive_volume import RefractiveVolume
 from pellucid.scene.relief_quality import ReliefQuality
 from pellucid.scene.relief_surface import ReliefLayer, ReliefSurface
 from pellucid.scene.scene import Scene
+from pellucid.scene.sphere_maps import sphere_map
 from pellucid.scene.water import Water
 from pellucid.scene.water_quality import WaterQuality
 
@@ -27,6 +29,7 @@ __all__ = [
     "Mesh",
     "PointLight",
     "Quality",
+    "RefractiveSheet",
     "RefractiveVolume",
     "ReliefLayer",
     "ReliefQuality",
@@ -38,4 +41,5 @@ __all__ = [
     "WaterQuality",
     "load_scene",
     "save_scene",
+    "sphere_map",
 ]

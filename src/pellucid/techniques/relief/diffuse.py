@@ -1,4 +1,4 @@
-"""Light from everywhere through a smooth interface over a matt base [saunderson1942], with absorption between."""
+"""Diffuse light through the translucent layer, as tables for the shaders; see `techniques.diffuse_light`."""
 
 from __future__ import annotations
 
@@ -6,23 +6,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from pellucid.optics import fresnel_dielectric
+from pellucid.techniques.diffuse_light import diffuse_shares
 from pellucid.techniques.relief.layouts import DIFFUSE_ENTRIES
-
-POINTS = 256
 
 
 @lru_cache(maxsize=16)
 def diffuse_tables(n_outside: float, n_layer: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarray]:
-    """Shares of light at `DIFFUSE_ENTRIES` values of y = exp(-absorption depth) from 0 to 1, by channel.
-
-    With m the cosine in the layer, F its Fresnel reflectance from inside, n the relative index of the layer:
-
-        down(y) = n^2 int (1 - F) y^(1/m) 2 m dm,        back(y) = int F y^(2/m) 2 m dm     over m from 0 to 1,
-
-    the share of a uniform environment's irradiance that reaches the base, and of the light of a matt base the share
-    that comes back. A layer without absorption has down(1) = n^2 (1 - back(1)): under it a white base sends out
-    just what comes in.
+    """`diffuse_shares` at `DIFFUSE_ENTRIES` values of exp(-absorption depth) from 0 to 1, by channel.
 
     Parameters
     ----------
@@ -35,22 +25,5 @@ def diffuse_tables(n_outside: float, n_layer: tuple[float, float, float]) -> tup
     y = np.linspace(0.0, 1.0, DIFFUSE_ENTRIES)
     down, back = np.zeros((DIFFUSE_ENTRIES, 4)), np.zeros((DIFFUSE_ENTRIES, 4))
     for channel, n in enumerate(np.asarray(n_layer, float) / n_outside):
-        m, weight = _cosines(n)
-        f = fresnel_dielectric(m, n, 1.0)
-        down[:, channel] = n * n * (weight * (1.0 - f) * y[:, None] ** (1.0 / m)).sum(axis=1)
-        back[:, channel] = (weight * f * y[:, None] ** (2.0 / m)).sum(axis=1)
+        down[:, channel], back[:, channel] = diffuse_shares(float(n), y)
     return down.astype(np.float32), back.astype(np.float32)
-
-
-def _cosines(n: float) -> tuple[np.ndarray, np.ndarray]:
-    """Cosines in the layer and the weights 2 m dm, which add up to 1, divided where total reflection begins."""
-    x, w = np.polynomial.legendre.leggauss(POINTS)
-    critical = np.sqrt(max(1.0 - 1.0 / n**2, 0.0)) if n > 1.0 else 0.0
-    m, dm = [], []
-    for low, high in ((0.0, critical), (critical, 1.0)):
-        if high > low:
-            s = 0.5 * (x + 1.0)  # m = low + (high - low) s^2 resolves the root at the critical angle
-            m.append(low + (high - low) * s**2)
-            dm.append((high - low) * s * w)
-    cosines = np.concatenate(m)
-    return cosines, 2.0 * cosines * np.concatenate(dm)
