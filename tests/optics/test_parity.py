@@ -120,6 +120,16 @@ def test_equal_indices_do_not_bend(device: Device) -> None:
     np.testing.assert_allclose(found["direction"], d, atol=4 * EPS)
 
 
+def test_refraction_by_a_factor(device: Device) -> None:
+    d, normal = single(UNITS[0]), single(UNITS[1])
+    normal = np.where(np.sum(d * normal, axis=-1, keepdims=True) < 0.0, normal, -normal)
+    factor = single(np.linspace(-0.4, 2.0, 64))
+    found = probed(device, "refraction_factor", "refract_by_factor", d, normal, factor)
+    expected = optics.refract_by_factor(d, normal, factor)
+    np.testing.assert_array_equal(found["valid"], expected.valid)
+    np.testing.assert_allclose(found["direction"], expected.direction, atol=2e-6)
+
+
 NS = single(np.linspace(1.0, 2.6, 30))
 VECTORS = single(RNG.normal(size=(4, 64, 3)))
 SCALARS = single(RNG.uniform(0.1, 2.0, (4, 64)))
@@ -137,6 +147,10 @@ CASES: list[tuple[str, str, tuple[Any, ...], float, float]] = [
     # asin is an approximation on GPUs: WGSL grants it an absolute error of 2^-11
     ("snell", "critical_angle", (single(1.5), NS), 0.0, 2.0**-11),
     ("fresnel", "brewster_angle", (single(1.0), NS), 0.0, 1e-5),
+    ("refraction_factor", "exact_factor", (COS_I[N_I <= N_T], N_I[N_I <= N_T], N_T[N_I <= N_T]), 1e-5, 3e-4),
+    # sin is an approximation on GPUs: WGSL grants it an absolute error of 2^-11
+    ("refraction_factor", "fitted_factor", (single(1.0), NS, single(np.linspace(0.0, 1.5, 30))), 0.0, 2.0**-10),
+    ("refraction_factor", "opposite_factor", (SCALARS[0],), 1e-6, 1e-7),
     ("fresnel", "normal_reflectance", (single(1.5), NS), 1e-5, 1e-7),
     ("fresnel", "schlick", (single(0.04), single(np.linspace(0, 1, 50)), single(5.0)), 1e-5, 1e-7),
     ("attenuation", "transmittance", (np.abs(VECTORS[0]), 5 * SCALARS[0]), 2e-6, 1e-7),
