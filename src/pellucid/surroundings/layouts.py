@@ -10,6 +10,11 @@ MATERIAL_SINGLE_SIDED = 1
 MATERIAL_UNSEEN = 2  # rays and lamps meet it, the picture does not show it
 MATERIAL_CASTS_SHADOW = 16  # shifted left by the layer of the shadow map
 
+DIFFUSE_ENTRIES = 32  # rows of a table of light that goes diffusely through an interface, see diffuse.py
+
+MAX_WATERS = 4  # of which what stands in them is lit through their surface
+MAX_WATER_LIGHTS = 4  # directional lights with caustics and shadows in each of them
+
 LIGHT_DIRECTIONAL = 0
 LIGHT_POINT = 1
 LIGHT_AREA = 2
@@ -89,6 +94,7 @@ Light = struct(
         ("edge_u", "vec3f"),
         ("radius", "f32"),  # tangent of the angle of a directional light; of the disc as large as an area light, m
         ("edge_v", "vec3f"),
+        ("water_layer", "i32"),  # among the maps of each water, of a directional light; -1 for none
         ("shadow_from_world", "mat4x4f"),
     ]
 )
@@ -136,5 +142,29 @@ QueryHit = struct(
         ("valid", "u32"),
         ("triangle", "u32"),
         ("blocked", "u32"),
+    ]
+)
+
+# Water that opaque surfaces stand in, see submersion.py. Arrays have one entry for each water, tables DIFFUSE_ENTRIES.
+SubmersionParams = struct(
+    [
+        ("bounds", ("vec4f", MAX_WATERS)),  # lowest and highest x, z, metres; empty where there is no water
+        (
+            "level",
+            ("vec4f", MAX_WATERS),
+        ),  # level; highest wave over it; first layer of maps; reach of their depth, m
+        ("index", ("vec4f", MAX_WATERS)),  # over that above, for red, green, blue
+        ("absorption", ("vec4f", MAX_WATERS)),  # 1/m; 1 where meshes throw shadows
+        ("scattering", ("vec4f", MAX_WATERS)),  # 1/m; mean cosine
+        ("sky", ("vec4f", MAX_WATERS)),  # irradiance of the sky just below a level surface, over its intensity
+        ("sky_axis", ("vec4f", MAX_WATERS)),  # unit, where that comes from; space of the environment
+        ("ground", ("vec4f", MAX_WATERS)),  # irradiance from below, likewise
+        ("window", ("vec4f", MAX_WATERS)),  # share of matt light that the surface throws back; sine^2 of Snell's window
+        ("slope", ("vec4f", MAX_WATERS * MAX_WATER_LIGHTS)),  # of the camera of each map, horizontal way over depth
+        (
+            "down",
+            ("vec4f", MAX_WATERS * DIFFUSE_ENTRIES),
+        ),  # share of the sky left at a depth
+        ("back", ("vec4f", MAX_WATERS * DIFFUSE_ENTRIES)),  # share of matt light that comes back
     ]
 )

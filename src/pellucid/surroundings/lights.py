@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pellucid.surroundings.layouts import LIGHT_AREA, LIGHT_DIRECTIONAL, LIGHT_POINT, Light
+from pellucid.surroundings.layouts import LIGHT_AREA, LIGHT_DIRECTIONAL, LIGHT_POINT, MAX_WATER_LIGHTS, Light
 
 if TYPE_CHECKING:
     from pellucid.scene import AreaLight, DirectionalLight, PointLight
@@ -34,7 +34,7 @@ def light_records(lights: Sequence[object], corners: Sequence[np.ndarray]) -> tu
     from pellucid.scene import AreaLight, DirectionalLight, PointLight
 
     records = np.zeros(max(len(lights), 1), Light)
-    records["shadow_layer"] = -1
+    records["shadow_layer"] = records["water_layer"] = -1
     casters: list[list[bool]] = []
     for record, light in zip(records, lights, strict=False):
         if isinstance(light, DirectionalLight):
@@ -43,6 +43,9 @@ def light_records(lights: Sequence[object], corners: Sequence[np.ndarray]) -> tu
             _write_point(record, light)
         elif isinstance(light, AreaLight):
             _write_area(record, light)
+    high = np.flatnonzero((records["kind"] == LIGHT_DIRECTIONAL) & (records["direction"][:, 1] > 0.0))
+    for layer, light in enumerate(high[:MAX_WATER_LIGHTS]):
+        records["water_layer"][light] = layer
     return records, casters
 
 

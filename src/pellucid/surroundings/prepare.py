@@ -11,6 +11,7 @@ from pellucid.surroundings import environment, geometry, lights, maps
 from pellucid.surroundings.camera import View, view_of, write_view
 from pellucid.surroundings.caustics import CausticMaps
 from pellucid.surroundings.layouts import MATERIAL_CASTS_SHADOW, MATERIAL_UNSEEN, FrameParams, Light
+from pellucid.surroundings.submersion import SkyThroughSurface, Submersion, sky_through, small_sky
 
 if TYPE_CHECKING:
     from pellucid.gpu import Device
@@ -36,6 +37,7 @@ class Surroundings:
     shadow_lights : which light of the scene each shadow map belongs to.
     caustics : light of refractive matter on the meshes.
     view : the camera, as `set_camera` was told.
+    submersion : water that they stand in.
     """
 
     view: View
@@ -64,6 +66,9 @@ class Surroundings:
         self._casters: list[list[bool]] = []
         self._lamp_kinds = lights.lamp_constants(np.zeros(0, Light))
         self.caustics = CausticMaps(device, self._resources)
+        self.submersion = Submersion(device, self._resources)
+        self._sky = np.zeros((1, 2, 3))
+        self._through: dict[tuple[float, ...], SkyThroughSurface] = {}
 
     @property
     def bindings(self) -> dict[str, Any]:
@@ -78,7 +83,7 @@ class Surroundings:
     @property
     def nbytes(self) -> int:
         """Bytes of GPU memory held."""
-        return FrameParams.itemsize + sum(self._sizes.values()) + self.caustics.nbytes
+        return FrameParams.itemsize + sum(self._sizes.values()) + self.caustics.nbytes + self.submersion.nbytes
 
     @property
     def geometry(self) -> geometry.Geometry:
@@ -88,7 +93,8 @@ class Surroundings:
     @property
     def shading_constants(self) -> dict[str, float]:
         """Override constants of every shader that shades meshes; they tell kinds of lamps, not where one is."""
-        return {"CAUSTICS": float(self.caustics.active), **self._lamp_kinds}
+        own = {"CAUSTICS": float(self.caustics.active), "SUBMERGED": float(self.submersion.active)}
+        return {**own, **self._lamp_kinds}
 
     @property
     def frame(self) -> np.ndarray:
@@ -123,6 +129,12 @@ class Surroundings:
         self.light_count = len(scene.lights)
         self._frame["light_count"] = self.light_count
         self.set_camera(scene.camera, size)
+
+    def sky_through(self, n: tuple[float, float, float]) -> SkyThroughSurface:
+        """Light of the environment just below level water; `n` is its index by channel over that of what is above."""
+        if n not in self._through:
+            self._through[n] = sky_through(self._sky, self._frame["environment_sh"][:, :3].astype(np.float64), n)
+        return self._through[n]
 
     def set_camera(
         self,
@@ -224,6 +236,7 @@ class Surroundings:
         self._frame["environment_sh"][:, :3] = environment.irradiance_sh(levels[0])
         self._frame["environment_height"] = levels[0].shape[0]
         self._frame["environment_max_lod"] = len(levels) - 1
+        self._sky, self._through = small_sky(levels), {}
         self._store_environment("env_map", levels)
         self._store_environment("env_glossy", environment.glossy_levels(levels))
 

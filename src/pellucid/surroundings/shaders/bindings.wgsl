@@ -5,6 +5,7 @@
 //!struct TriangleAttributes from surroundings.layouts
 //!struct Material from surroundings.layouts
 //!struct Light from surroundings.layouts
+//!struct SubmersionParams from surroundings.layouts
 
 @group(1) @binding(0) var<uniform> frame: FrameParams;
 @group(1) @binding(1) var env_map: texture_2d<f32>;
@@ -23,3 +24,6 @@
 @group(1) @binding(14) var blocked_map: texture_2d<f32>;
 @group(1) @binding(15) var caustic_sampler: sampler;
 @group(1) @binding(16) var caustic_charts: texture_2d<u32>;  // bits of floats, three texels a chart
+@group(1) @binding(17) var<uniform> submersion: SubmersionParams;
+@group(1) @binding(18) var submerged_light: texture_2d_array<f32>;  // what comes through a surface; its height, metres
+@group(1) @binding(19) var submerged_depth: texture_depth_2d_array;  // first mesh below it along the light

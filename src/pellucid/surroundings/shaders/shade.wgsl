@@ -4,9 +4,11 @@
 //!import surroundings/shaders/environment
 //!import surroundings/shaders/ggx
 //!import surroundings/shaders/lights
+//!import surroundings/shaders/submerged_lights
 //!import surroundings/shaders/surface
 
 override CAUSTICS: bool = false;  // whether light that has passed refractive matter was collected on the meshes
+override SUBMERGED: bool = false;  // whether there is water that surfaces may stand in
 
 const SHADE_MIN_ALPHA = 0.002;  // a lamp is a point: a perfect mirror would show it infinitely bright
 
@@ -18,20 +20,43 @@ fn shade_surface(surface: SurfacePoint, triangle: u32, view_ws: vec3f) -> vec3f 
     let material = surface.material;
     let n_dot_v = clamp(dot(n_ws, view_ws), 1e-4, 1.0);
     let roughness = materials[material].roughness;
-    let f0 = materials[material].specular;
+    var f0 = materials[material].specular;
+    var water = Submerged(false, 0u, 0.0);
+    if SUBMERGED {
+        water = submerged_at(p_ws);
+        f0 = select(f0, submerged_coat(f0, submersion.index[water.water].g), water.inside && f0 > 0.0);
+    }
     let alpha = max(roughness * roughness, SHADE_MIN_ALPHA);
     let specular = ggx_albedo(n_dot_v, roughness, f0);
     let diffuse = (1.0 - specular) * base_color(material, surface.uv, p_ws, n_dot_v) / GGX_PI;
-    var radiance = materials[material].emission + diffuse * environment_irradiance(n_ws);
+    var from_everywhere = environment_irradiance(n_ws);
+    if SUBMERGED {
+        if water.inside {
+            from_everywhere = submerged_irradiance(n_ws, diffuse * GGX_PI, water);
+        }
+    }
+    var radiance = materials[material].emission + diffuse * from_everywhere;
     if specular > 0.0 {
-        radiance += specular * environment_glossy(reflect(-view_ws, n_ws), alpha);
+        let mirrored = reflect(-view_ws, n_ws);
+        var glossy = environment_glossy(mirrored, alpha);
+        if SUBMERGED {
+            if water.inside {
+                glossy = submerged_glossy(mirrored, alpha, water);
+            }
+        }
+        radiance += specular * glossy;
     }
     var direct = DirectLight(vec3f(0.0), vec3f(0.0));
     let n_face = face_normal(triangle, view_ws);
     for (var light = 0u; light < light_count(); light++) {
         let samples = light_sample_count(light);
         for (var k = 0u; k < samples; k++) {
-            let sample = sample_light(light, k, p_ws, n_ws);
+            var sample: LightSample;
+            if SUBMERGED {
+                sample = sample_light_anywhere(light, k, p_ws, n_ws, water);
+            } else {
+                sample = sample_light(light, k, p_ws, n_ws);
+            }
             let n_dot_l = dot(n_ws, sample.direction);
             if CAUSTICS {
                 direct.irradiance += sample.irradiance * max(dot(n_face, sample.direction), 0.0);

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from pellucid.gpu.layout import struct
-
-DIFFUSE_ENTRIES = 32  # rows of the table of light that goes diffusely through the interface, see diffuse.py
+from pellucid.surroundings.layouts import DIFFUSE_ENTRIES
 
 NEAREST = ("height_bounds", "cone_map", "relief_vertices")  # textures of 32 bits that are read texel by texel
 VERTEX_TEXELS = 5  # of four numbers, that a ReliefVertex takes

@@ -13,8 +13,8 @@ from pellucid.gpu.modules import declared
 from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT, Targets
 from pellucid.scene.placement import placement_matrix
 from pellucid.scene.relief_quality import REFLECTIONS, REFRACTIONS, SEARCHES, STEPS, ReliefQuality, quality_of
+from pellucid.surroundings.diffuse import diffuse_tables
 from pellucid.techniques.relief.cube import SceneCube
-from pellucid.techniques.relief.diffuse import diffuse_tables
 from pellucid.techniques.relief.frames import Hull, vertex_texels
 from pellucid.techniques.relief.layouts import NEAREST, ReliefParams
 from pellucid.techniques.relief.light import LightMaps, LightPasses, light_constants, mapped_lights, plane_of

@@ -14,7 +14,7 @@ from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT, Targets
 from pellucid.optics import fitted_factor, opposite_factor
 from pellucid.scene.placement import placement_matrix
 from pellucid.scene.refractive_sheet import SHOWS
-from pellucid.techniques.diffuse_light import diffuse_shares
+from pellucid.surroundings.diffuse import diffuse_shares
 from pellucid.techniques.sheet.layouts import SheetParams
 from pellucid.techniques.sheet.prepare import faces_of, picture_levels, vertices_of
 from pellucid.techniques.sheet.reference import inward, picture_hit, shrunk_limits

@@ -1,7 +1,7 @@
-// Light from everywhere through a smooth interface over a matt base; tables of diffuse.py over exp(-absorption depth).
+// Light from everywhere through a smooth interface over a matt base; tables of surroundings/diffuse.py over exp(-absorption depth).
 //!import techniques/relief/shaders/bindings
 
-const DIFFUSE_ENTRIES = 32u;  // layouts.DIFFUSE_ENTRIES
+const DIFFUSE_ENTRIES = 32u;  // surroundings.layouts.DIFFUSE_ENTRIES
 
 // Share of the light of a uniform environment that reaches the base, by channel
 fn relief_diffuse_down(once: vec3f) -> vec3f {

@@ -1,0 +1,58 @@
+// Light of all lamps where some surfaces stand in water. In air it is that of lights.wgsl.
+//!import surroundings/shaders/submerged_lamp
+//!import surroundings/shaders/submerged_sky
+//!import surroundings/shaders/submerged_sun
+
+fn sample_light_anywhere(light: u32, index: u32, p_ws: vec3f, n_ws: vec3f, at: Submerged) -> LightSample {
+    if LAMPS_FAR && (!LAMPS_NEAR || lights[light].kind == LIGHT_DIRECTIONAL) {
+        if at.inside {
+            return sample_submerged_sun(light, p_ws, n_ws, at);
+        }
+        return sample_directional_light(light, p_ws, n_ws);
+    }
+    if LAMPS_NEAR {
+        return sample_near_light_anywhere(light, index, p_ws, n_ws, at);
+    }
+    return LightSample(n_ws, vec3f(0.0));
+}
+
+// As sample_near_light. A lamp over the water lights what is in it through the level surface, exactly but for waves; in
+// air, or from a lamp in the water, light goes straight, and is weakened in the water. Both parts of a bent way share
+// the code of one shadow ray.
+fn sample_near_light_anywhere(light: u32, index: u32, p_ws: vec3f, n_ws: vec3f, at: Submerged) -> LightSample {
+    let is_area = lights[light].kind == LIGHT_AREA;
+    let cell = vec2f(f32(index % AREA_STRATA), f32(index / AREA_STRATA));
+    let st = (cell + light_jitter(p_ws, index + 31u * light)) / f32(AREA_STRATA) - 0.5;
+    let aside = st.x * lights[light].edge_u + st.y * lights[light].edge_v;
+    let lamp_ws = lights[light].position + select(vec3f(0.0), aside, is_area);
+    let level_m = p_ws.y + at.depth_m;
+    let bent = at.inside && lamp_ws.y > level_m;
+    let n = submersion.index[at.water].rgb;
+    let way = submerged_way(p_ws, lamp_ws, select(p_ws.y - 1.0, level_m, bent), n.g);
+    let straight = lamp_ws - p_ws;
+    let d2 = max(dot(straight, straight), 1e-12);
+    let direction = select(straight * inverseSqrt(d2), way.below, bent);
+    let from_lamp = select(direction, way.above, bent);
+    let cosine = -dot(from_lamp, lights[light].direction);
+    let area = length(cross(lights[light].edge_u, lights[light].edge_v)) / f32(AREA_STRATA * AREA_STRATA);
+    let strength = select(1.0, cosine * area, is_area) / select(d2, way.spread_m2, bent);
+    if strength <= 0.0 || dot(n_ws, direction) <= 0.0 {
+        return LightSample(direction, vec3f(0.0));
+    }
+    var reaches = true;
+    if lights[light].shadow_layer >= 0 {
+        for (var part = 0u; part < 2u; part++) {
+            let start = select(p_ws + n_ws * frame.ray_epsilon_m, way.crossing, part == 1u);
+            let length_m = select(select(sqrt(d2), way.below_m, bent), way.above_m, part == 1u);
+            let shortened = length_m - 2.0 * frame.ray_epsilon_m;
+            let needed = reaches && (part == 0u || bent);
+            if needed && occluded(start, select(direction, way.above, part == 1u), shortened) {
+                reaches = false;
+            }
+        }
+    }
+    let extinction = submersion.absorption[at.water].rgb + submersion.scattering[at.water].rgb;
+    let wet_m = select(0.0, select(sqrt(d2), way.below_m, bent), at.inside);
+    let passed = select(vec3f(1.0), 1.0 - submerged_reflectance(way.above.y, n), bent);
+    return LightSample(direction, lights[light].power * passed * exp(-extinction * wet_m) * select(0.0, strength, reaches));
+}

@@ -1,0 +1,69 @@
+// Directional light in water: refracted at a level surface, focused by its waves as its map says, weakened on its way.
+//!import optics/fresnel
+//!import surroundings/shaders/lights
+//!import surroundings/shaders/submersion
+
+// Unit direction towards a light, in the water; `index` is that of the water over that above
+fn submerged_direction(to_light: vec3f, index: f32) -> vec3f {
+    let aside = to_light.xz / index;
+    return vec3f(aside.x, sqrt(max(1.0 - dot(aside, aside), 0.0)), aside.y);
+}
+
+// Irradiance across the refracted beam: that above, l.y of which falls on a square metre of the surface, over the
+// share of the refracted beam that leaves it, times what the surface lets through and does to its density
+fn sample_submerged_sun(light: u32, p_ws: vec3f, n_ws: vec3f, at: Submerged) -> LightSample {
+    let towards = lights[light].direction;
+    let index = submersion.index[at.water].rgb;
+    let direction = submerged_direction(towards, index.g);
+    if towards.y <= 0.0 || dot(direction, n_ws) <= 0.0 {
+        return LightSample(direction, vec3f(0.0));
+    }
+    let irradiance = lights[light].power * (towards.y / direction.y);
+    return LightSample(direction, irradiance * submerged_beam(light, p_ws, n_ws, direction, at));
+}
+
+// What is left of the flux that falls on the surface above a point: its share that comes through, shadows, and loss
+fn submerged_beam(light: u32, p_ws: vec3f, n_ws: vec3f, direction: vec3f, at: Submerged) -> vec3f {
+    let level_m = submersion.level[at.water].x;
+    let index = submersion.index[at.water].rgb;
+    let towards = lights[light].direction;
+    let extinction = submersion.absorption[at.water].rgb + submersion.scattering[at.water].rgb;
+    var share = 1.0 - vec3f(
+        fresnel_dielectric(towards.y, 1.0, index.r),
+        fresnel_dielectric(towards.y, 1.0, index.g),
+        fresnel_dielectric(towards.y, 1.0, index.b),
+    );
+    let entry = submerged_entry(p_ws, level_m, direction.xz / direction.y);
+    let path_m = max(level_m + submerged_wave(at.water, entry) - p_ws.y, 0.0) / direction.y;
+    let layer = lights[light].water_layer;
+    if layer >= 0 {
+        let slope = submersion.slope[at.water * MAX_WATER_LIGHTS + u32(layer)].xy;
+        let uv = submerged_uv(at.water, submerged_entry(p_ws, level_m, slope));
+        if all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0)) {
+            let map = u32(submersion.level[at.water].z) + u32(layer);
+            share = textureSampleLevel(submerged_light, caustic_sampler, uv, map, 0.0).rgb;
+            share *= submerged_visibility(at.water, map, p_ws, n_ws, slope);
+        }
+    }
+    return share * exp(-extinction * path_m);
+}
+
+// Whether the first mesh below the surface, along the light, is the point's own; filtered and kept off the surface as
+// in shadow.wgsl
+fn submerged_visibility(water: u32, map: u32, p_ws: vec3f, n_ws: vec3f, slope: vec2f) -> f32 {
+    let bounds = submersion.bounds[water];
+    let size = vec2f(textureDimensions(submerged_depth));
+    let texel_m = max((bounds.z - bounds.x) / size.x, (bounds.w - bounds.y) / size.y);
+    let to_camera = normalize(vec3f(slope.x, 1.0, slope.y));
+    let cosine = dot(n_ws, to_camera);
+    let p = p_ws + n_ws * texel_m * (0.05 + SHADOW_REACH_TEXELS * sqrt(saturate(1.0 - cosine * cosine)));
+    let level = submersion.level[water];
+    let depth = (level.x + level.y - p.y) / level.w;
+    let uv = submerged_uv(water, submerged_entry(p, level.x, slope));
+    var sum = 0.0;
+    for (var k = 0; k < 4; k++) {
+        let corner = vec2f(f32(k & 1), f32(k >> 1)) * 2.0 - 1.0;
+        sum += textureSampleCompareLevel(submerged_depth, shadow_sampler, uv + 0.5 * corner / size, map, depth);
+    }
+    return mix(1.0, 0.25 * sum, submersion.absorption[water].a);
+}
