@@ -247,7 +247,7 @@ def small_sky(levels: Sequence[np.ndarray]) -> np.ndarray:
 
 
 def cap_irradiance(cosine: np.ndarray, sine2: float) -> np.ndarray:
-    """Irradiance of an even round patch of sky on a tilted surface, over that on one that faces it [snyder1996; lagarde2014].
+    """Irradiance of an even round patch of sky on a tilted surface, over that on one that faces it [snyder1996].
 
     Parameters
     ----------
