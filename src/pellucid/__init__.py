@@ -8,7 +8,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from pellucid.errors import AssetError, NoAdapterError, PellucidError, SceneError, ShaderError
+from pellucid.errors import AssetError, AssetWarning, NoAdapterError, PellucidError, SceneError, ShaderError
 
 if TYPE_CHECKING:
     from pellucid import media, optics
@@ -61,6 +61,7 @@ __all__ = [
     "GGX",
     "AreaLight",
     "AssetError",
+    "AssetWarning",
     "Camera",
     "Device",
     "DirectionalLight",

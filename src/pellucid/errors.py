@@ -30,6 +30,13 @@ class AssetError(PellucidError):
         super().__init__(_sentence(self.path, reason, remedy))
 
 
+class AssetWarning(UserWarning):
+    """A file can be used, but not all that it names; the message says what is missing and what stands for it."""
+
+    def __init__(self, path: str | PathLike[str], reason: str, remedy: str = "") -> None:
+        super().__init__(_sentence(str(path), reason, remedy))
+
+
 class SceneError(PellucidError):
     """A value in a scene or a call is out of its range.
 

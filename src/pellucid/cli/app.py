@@ -6,7 +6,9 @@ import errno
 import inspect
 import sys
 import traceback
-from collections.abc import Callable
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Annotated, Any
 
 import typer
@@ -14,13 +16,25 @@ from typer.core import TyperGroup
 
 from pellucid.cli.animate import animate
 from pellucid.cli.bench import bench
-from pellucid.cli.console import complain, outcome
+from pellucid.cli.console import complain, notice, outcome
 from pellucid.cli.demo import demo
 from pellucid.cli.doctor import doctor
 from pellucid.cli.media import media
 from pellucid.cli.render import render
 from pellucid.cli.trace import trace
-from pellucid.errors import PellucidError
+from pellucid.errors import AssetWarning, PellucidError
+
+
+@contextmanager
+def _notices() -> Iterator[None]:
+    """Tells an AssetWarning in one line too."""
+    with warnings.catch_warnings():
+        shown = warnings.showwarning
+        warnings.simplefilter("always", AssetWarning)
+        warnings.showwarning = lambda message, category, *rest: (
+            notice(str(message)) if issubclass(category, AssetWarning) else shown(message, category, *rest)
+        )
+        yield
 
 
 class Commands(TyperGroup):
@@ -28,7 +42,8 @@ class Commands(TyperGroup):
 
     def invoke(self, ctx: Any) -> Any:
         try:
-            return super().invoke(ctx)
+            with _notices():
+                return super().invoke(ctx)
         except PellucidError as error:
             complain(str(error))
         except KeyboardInterrupt:

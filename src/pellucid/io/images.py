@@ -75,6 +75,12 @@ def srgb_to_linear(encoded: np.ndarray) -> np.ndarray:
     return np.where(encoded <= 0.04045, toe, curve).astype(encoded.dtype)
 
 
+def linear_to_srgb(linear: np.ndarray) -> np.ndarray:
+    """The sRGB encoding curve on values of 0..1 [iec61966, 5.2]."""
+    curve = 1.055 * np.maximum(linear, 0.0031308) ** (1.0 / 2.4) - 0.055
+    return np.where(linear <= 0.0031308, 12.92 * linear, curve).astype(linear.dtype)
+
+
 def _decode(file: Path) -> tuple[np.ndarray, bool]:
     """Pixels of `file` as stored, scaled to 0..1 if integers, and whether they are sRGB encoded."""
     import OpenImageIO

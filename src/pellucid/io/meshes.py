@@ -7,7 +7,7 @@ import logging
 import re
 import struct
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -36,7 +36,8 @@ class MeshData:
         their mean by number of faces.
     base_color_map : (H, W, 3 or 4) float32 linear, row 0 at the top, or None. Kept only when the whole
         mesh shares one map.
-    name : the file's stem.
+    name : the file's stem; of one of several parts, that of its material.
+    missing : what the file names but could not be had, such as a picture; for each a sentence.
     """
 
     vertices: np.ndarray
@@ -46,6 +47,7 @@ class MeshData:
     base_color: tuple[float, float, float] | None = None
     base_color_map: np.ndarray | None = None
     name: str = ""
+    missing: tuple[str, ...] = ()
 
 
 def read_mesh(path: str | PathLike[str]) -> MeshData:
@@ -60,15 +62,39 @@ def read_mesh(path: str | PathLike[str]) -> MeshData:
     AssetError : missing, empty, truncated, not a mesh, no faces, coordinates that are not finite,
         faces that point outside the vertices, zero extent, more than 20 million faces.
     """
+    file, parts, missing = _parts(path)
+    mesh = replace(_merged(parts, file.stem), missing=missing)
+    _judge(file, mesh)
+    return mesh
+
+
+def read_meshes(path: str | PathLike[str]) -> list[MeshData]:
+    """Read a mesh as its parts: one for each geometry and material of the file, in its order.
+
+    What is missing stands in the first part.
+
+    Parameters
+    ----------
+    path : as for :func:`read_mesh`, which merges the parts.
+
+    Raises
+    ------
+    AssetError : as :func:`read_mesh`.
+    """
+    file, parts, missing = _parts(path)
+    meshes = [_merged([part], part.name or file.stem) for part in parts]
+    _judge(file, _merged(parts, file.stem))
+    return [replace(meshes[0], missing=missing), *meshes[1:]]
+
+
+def _parts(path: str | PathLike[str]) -> tuple[Path, list[_Part], tuple[str, ...]]:
     file = existing_file(path)
     suffix = suffix_of(file, READABLE, "read as a mesh")
     _judge_header(file, suffix)
-    parts = _triangle_parts(file, suffix)
+    parts, missing = _triangle_parts(file, suffix)
     if not parts:
         raise AssetError(file, "holds no faces", "export triangles, not only points, lines or an empty scene")
-    mesh = _merged(parts, file.stem)
-    _judge(file, mesh)
-    return mesh
+    return file, parts, missing
 
 
 def _judge_header(file: Path, suffix: str) -> None:
@@ -105,6 +131,7 @@ class _Part(NamedTuple):
 
     mesh: Any
     placement: np.ndarray
+    name: str = ""
 
     def vertices(self) -> np.ndarray:
         with np.errstate(invalid="ignore"):  # a vertex at infinity is reported, not warned about
@@ -123,16 +150,16 @@ class _Part(NamedTuple):
         return np.asarray(turned / np.linalg.norm(turned, axis=1, keepdims=True))
 
 
-def _triangle_parts(file: Path, suffix: str) -> list[_Part]:
-    """The geometries of the file that have faces."""
+def _triangle_parts(file: Path, suffix: str) -> tuple[list[_Part], tuple[str, ...]]:
+    """The geometries of the file that have faces, and what the file names but could not be had."""
     import trimesh
 
     log = logging.getLogger("trimesh")
     was_disabled, log.disabled = log.disabled, True  # what matters is raised below; the rest only alarms
     try:
-        loaded = _loaded(file)
-        placed = [loaded.graph[node] for node in loaded.graph.nodes_geometry]
-        parts = [_Part(loaded.geometry[name], np.asarray(matrix, np.float64)) for matrix, name in placed]
+        loaded, missing = _loaded(file)
+        placed = [(str(loaded.graph[node][1]), loaded.graph[node][0]) for node in loaded.graph.nodes_geometry]
+        parts = [_Part(loaded.geometry[name], np.asarray(matrix, np.float64), name) for name, matrix in placed]
         parts = [part for part in parts if isinstance(part.mesh, trimesh.Trimesh) and len(part.mesh.faces)]
         if suffix == ".stl":  # the format has no shared vertices at all
             for part in parts:
@@ -142,18 +169,47 @@ def _triangle_parts(file: Path, suffix: str) -> list[_Part]:
         raise AssetError(file, reason, "open and export it again in a 3-D program") from error
     finally:
         log.disabled = was_disabled
-    return parts
+    return (_in_order(parts, _named(_as_utf8(file.read_bytes()), "usemtl")) if suffix == ".obj" else parts), missing
 
 
-def _loaded(file: Path) -> Any:
+def _in_order(parts: Sequence[_Part], used: list[str]) -> list[_Part]:
+    """The parts of an OBJ, which trimesh gives in no order, in that of their materials; named after them.
+
+    Where the look is unknown trimesh fills in a material and a grey picture of its own; they are taken away.
+    """
+    named = []
+    for part in parts:
+        material: Any = getattr(part.mesh.visual, "material", None)
+        name = getattr(material, "name", None)
+        if name not in used and hasattr(material, "image"):
+            material.image = None
+        named.append(part._replace(name=name if name in used else ""))
+    return sorted(named, key=lambda part: used.index(part.name) if part.name else len(used))
+
+
+def _loaded(file: Path) -> tuple[Any, tuple[str, ...]]:
     """The file as a trimesh scene. Older programs write names and remarks in Latin-1, where trimesh gives up."""
     import trimesh
     from trimesh.resolvers import FilePathResolver
 
-    class Texts(FilePathResolver):
+    missing: list[str] = []
+    defined: list[str] = []
+
+    class Beside(FilePathResolver):
         def get(self, name: str) -> bytes:
-            content = bytes(super().get(name))
-            return _as_utf8(content) if name.lower().endswith(".mtl") else content
+            try:
+                content = bytes(super().get(_file_in(name)))
+                if file.suffix.lower() == ".obj" and not name.lower().endswith(".mtl"):
+                    _decode_all(content)
+            except (OSError, SyntaxError) as error:  # what a damaged picture raises
+                why = "is not there" if isinstance(error, FileNotFoundError) else "is no picture that can be read"
+                missing.append(f"{_file_in(name)!r} {why}")
+                raise
+            if not name.lower().endswith(".mtl"):
+                return content
+            content = _as_utf8(content)
+            defined.extend(_named(content, "newmtl"))
+            return content
 
     content = file.read_bytes()
     match file.suffix.lower():
@@ -164,9 +220,32 @@ def _loaded(file: Path) -> Any:
             content = _as_utf8(header) + end + body
         case ".stl" if content[:80].lstrip().lower().startswith(b"solid") and b"\0" not in content[:4096]:
             content = _as_utf8(content)
-    return trimesh.load_scene(
-        io.BytesIO(content), file_type=file.suffix[1:].lower(), resolver=Texts(str(file)), process=False
-    )
+    resolver = Beside(str(file))
+    scene = trimesh.load_scene(io.BytesIO(content), file_type=file.suffix[1:].lower(), resolver=resolver, process=False)
+    used = _named(content, "usemtl") if defined else []
+    unknown = [name for name in used if name not in defined]
+    missing += [f"the material {name!r} is in none of its .mtl files" for name in unknown]
+    return scene, tuple(dict.fromkeys(missing))
+
+
+def _named(text: bytes, keyword: str) -> list[str]:
+    """The names that stand after a keyword of an OBJ or its materials, in their order."""
+    names = re.findall(rf"^\s*{keyword}[ \t]+(\S.*)$", text.decode("utf-8", "replace"), re.MULTILINE)
+    return list(dict.fromkeys(name.strip() for name in names))
+
+
+def _file_in(words: str) -> str:
+    """The name of a file out of what an .mtl says: after options such as ``-s 2 2 1``, slashes as everywhere."""
+    name = words.strip().replace("\\", "/")
+    return name.split()[-1] if name.startswith("-") else name
+
+
+def _decode_all(picture: bytes) -> None:
+    """Raises what is wrong with a picture; read by halves it would be found only when the map is needed."""
+    from PIL import Image
+
+    with Image.open(io.BytesIO(picture)) as image:
+        image.load()
 
 
 def _as_utf8(content: bytes) -> bytes:

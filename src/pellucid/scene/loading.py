@@ -89,15 +89,24 @@ def _object(part: Any, folder: Path) -> SceneObject:
 
 
 def _mesh(part: schema.MeshBase, folder: Path) -> Mesh:
-    given = part.given("type", "kind", "file", "arrays")
+    given = part.given("type", "kind", "file", "part", "arrays")
     if "base_color_map" in given:
         given["base_color_map"] = _map(given["base_color_map"], folder)
     if isinstance(part, schema.MeshOfFile):
-        return Mesh.load(folder / part.file, **given)
+        return _mesh_of_file(part, folder / part.file, given)
     if isinstance(part, schema.MeshOfArrays):
         # No recipe: saving under the same name writes these arrays anew.
         return _mesh_of_arrays(folder / part.arrays, **given)
     return MESHES[part.kind](**given)  # type: ignore[attr-defined]
+
+
+def _mesh_of_file(part: schema.MeshOfFile, path: Path, look: dict[str, Any]) -> Mesh:
+    if part.part is None:
+        return Mesh.load(path, **look)
+    parts = Mesh.load_all(path, **look)
+    if not 0 <= part.part < len(parts):
+        raise SceneError("mesh.part", f"is {part.part}, but {path.name} has {len(parts)} parts", "they count from 0")
+    return parts[part.part]
 
 
 def _mesh_of_arrays(path: Path, **given: Any) -> Mesh:
@@ -247,5 +256,7 @@ def substance(part: str | float | schema.ColouredMedium) -> Medium:
             raise SceneError("medium.base_e", f"is given beside the medium {part.base!r}", "give two indices")
         return media.uniaxial(float(part.base), part.base_e, **colours)
     base = media.resolve(part.base)
+    if part.scattering_rgb_per_m is not None:
+        return media.water_body(**colours, base=base)
     other = colours.get("absorption_e_rgb_per_m")
     return base.with_absorption(part.absorption_rgb_per_m, part.name or None, other)

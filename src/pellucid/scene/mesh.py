@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, field
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from pellucid.errors import SceneError
+from pellucid.errors import AssetWarning, SceneError
 from pellucid.scene import checks, shapes
 from pellucid.scene.placement import Origin, SceneObject, check_placement, store
+
+if TYPE_CHECKING:
+    from pellucid.io.meshes import MeshData
 
 GEOMETRY_FIELDS = ("vertices", "faces", "normals", "uvs")
 
@@ -86,6 +90,9 @@ class Mesh(SceneObject):
     def load(cls, path: str | PathLike[str], **look: Any) -> Self:
         """A mesh from .obj, .ply, .stl, .glb or .gltf, with the base colour and map it brings along.
 
+        Several materials become one, of their mean colour; :meth:`load_all` keeps them apart. What the file names but
+        does not bring, such as a picture, is told by an AssetWarning.
+
         Parameters
         ----------
         look : any field but geometry, such as ``roughness=0.2`` or ``position=(0, 1, 0)``; it wins over
@@ -97,12 +104,36 @@ class Mesh(SceneObject):
         """
         from pellucid.io.meshes import read_mesh
 
-        data = read_mesh(path)
+        return cls._of_file(path, read_mesh(path), {}, look)
+
+    @classmethod
+    def load_all(cls, path: str | PathLike[str], **look: Any) -> list[Self]:
+        """The meshes of a file: one for each of its materials, each with its own colour and map.
+
+        Parameters
+        ----------
+        look : any field but geometry, for all of them; it wins over what the file says.
+
+        Raises
+        ------
+        AssetError : the file cannot be used. SceneError : a value out of range.
+        """
+        from pellucid.io.meshes import read_meshes
+
+        return [cls._of_file(path, data, {"part": i}, look) for i, data in enumerate(read_meshes(path))]
+
+    @classmethod
+    def _of_file(cls, path: str | PathLike[str], data: MeshData, part: dict[str, int], look: dict[str, Any]) -> Self:
+        if data.missing:
+            remedy = "the faces concerned have one colour; put the file beside it, or give base_color"
+            warnings.warn(AssetWarning(path, "; ".join(data.missing), remedy), stacklevel=3)
         own_map = None if data.uvs is None or data.base_color_map is None else _checked_map(data.base_color_map)
         found: dict[str, Any] = {"base_color_map": own_map}
         if data.base_color is not None:
             found["base_color"] = data.base_color
-        origin = Origin({"file": str(Path(fspath(path)).resolve())}, own_map)
+        elif own_map is not None:
+            found["base_color"] = (1.0, 1.0, 1.0)
+        origin = Origin({"file": str(Path(fspath(path)).resolve()), **part}, own_map)
         return cls(data.vertices, data.faces, data.normals, data.uvs, **(found | look), origin=origin)
 
     @classmethod

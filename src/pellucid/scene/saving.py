@@ -13,7 +13,7 @@ import numpy as np
 
 from pellucid import media
 from pellucid.errors import SceneError
-from pellucid.media import Medium
+from pellucid.media import Medium, WaterBody
 from pellucid.scene.brdf import GGX, TabulatedBRDF
 from pellucid.scene.environment import Environment
 from pellucid.scene.lights import AreaLight, DirectionalLight, PointLight
@@ -108,13 +108,18 @@ def describe_medium(medium: Any, where: str) -> str | float | dict[str, Any]:
     if not found.is_dispersive:
         base: str | float = found.n_d
     else:
-        named = [name for name in media.names() if _same_indices(media.get(name), found)]
+        waters = [isinstance(media.get(name), WaterBody) for name in media.names()]
+        others = [name for name, water in zip(media.names(), waters, strict=True) if not water]
+        named = [name for name in others if _same_indices(media.get(name), found)]
         if not named:
             raise SceneError(where, f"{found.name!r} has a formula of its own", "use a medium of pellucid.media")
         base = next((name for name in named if media.get(name).source == found.source), named[0])
-    if clear and not isinstance(base, str) and not found.is_uniaxial:
+    if clear and not isinstance(base, str) and not found.is_uniaxial and not isinstance(found, WaterBody):
         return base
     described = {"base": base, "absorption_rgb_per_m": list(found.absorption_per_m), "name": found.name}
+    if isinstance(found, WaterBody):
+        described["scattering_rgb_per_m"] = found.scattering_rgb_per_m.tolist()
+        described["asymmetry"] = found.asymmetry
     if found.extraordinary is not None:
         described["absorption_e_rgb_per_m"] = list(found.extraordinary.absorption_per_m)
         described |= {} if isinstance(base, str) else {"base_e": found.extraordinary.n_d}

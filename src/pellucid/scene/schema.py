@@ -106,6 +106,7 @@ class MeshBase(Placed):
 
 class MeshOfFile(MeshBase):
     file: StrictStr
+    part: StrictInt = UNSET
 
 
 class MeshOfArrays(MeshBase):
@@ -176,6 +177,8 @@ class ColouredMedium(Model):
     base: StrictStr | Number
     absorption_rgb_per_m: Triple
     absorption_e_rgb_per_m: Triple = UNSET
+    scattering_rgb_per_m: Triple = UNSET
+    asymmetry: Number = UNSET
     base_e: Number = UNSET
     name: StrictStr = UNSET
 
