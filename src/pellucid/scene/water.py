@@ -33,7 +33,7 @@ class Water(SceneObject):
     center : (x, z) of the rectangle's middle, metres.
     waves : heights over the level that may move: a source of ``fields.waves``, anything with `shape`, `tile_m`,
         `limits_m` and `advance(time_s)`. A periodic one repeats over the rectangle. None for a flat surface.
-    medium : a name, a Medium, or an index; a ``media.WaterBody`` scatters, such as ``"coastal water"``.
+    medium : a name, a Medium, or an index; a ``media.WaterBody`` scatters, such as ``"coastal"``.
     ambient_n : index of what is above.
     technique : ``"best"`` draws all that `quality` asks for, ``"fast"`` from pictures instead of rays, ``"mihalik"`` as
         [mihalik2008]; what `quality` says otherwise counts in each.

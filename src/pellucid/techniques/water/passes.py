@@ -140,7 +140,7 @@ class WaterTechnique:
             kept = {name: same.bindings[name] for name in WAVE_NAMES}
             body = Body(item, quality, same.waves, kept, same.time_s, same.version)
         else:
-            body = Body(item, quality, wave_maps(item, 0.0), {"wave_sampler": self.device.sampler("linear", "clamp")})
+            body = Body(item, quality, wave_maps(item, 0.0), {"wave_sampler": self.device.sampler("linear", "repeat")})
             self._upload(body)
         old = before[number].bindings if number < len(before) else {}
         for name, layout in (("water", WaterParams), ("water_views", WaterViews)):

@@ -61,7 +61,8 @@ def wave_maps(item: Water, time_s: float) -> WaveMaps:
     layers = [_layer(source, time_s, (rows, columns)) for source in sources]
     tiles = np.array([[*s.tile_m, _repeats(s), 0.0] for s in sources], np.float32)
     low, high = (sum(float(s.limits_m[k]) for s in sources) for k in (0, 1))
-    slope = sum(float(np.hypot(t[..., 1], t[..., 2]).max()) for t in layers)
+    cells = [(s.tile_m[0] / columns, s.tile_m[1] / rows) for s in sources]
+    slope = sum(_steepest(texels[..., 0], cell) for texels, cell in zip(layers, cells, strict=True))
     cell = min(min(s.tile_m[0] / s.shape[1], s.tile_m[1] / s.shape[0]) for s in sources)
     return WaveMaps(np.stack(layers), tiles, (low, high), slope, float(cell))
 
@@ -96,6 +97,13 @@ def _resized(texels: np.ndarray, shape: tuple[int, int], repeats: bool) -> np.nd
 
 def _repeats(source: Any) -> bool:
     return bool(getattr(source, "periodic", getattr(source, "boundary", "periodic") == "periodic"))
+
+
+def _steepest(heights: np.ndarray, cell_m: tuple[float, float]) -> float:
+    """Bound of the slope of the surface that is linear along both axes between the centres of texels."""
+    along_x = np.abs(np.diff(heights, axis=1, append=heights[:, :1])).max() / cell_m[0]
+    along_z = np.abs(np.diff(heights, axis=0, append=heights[:1])).max() / cell_m[1]
+    return float(np.hypot(along_x, along_z))
 
 
 def _slopes(heights: np.ndarray, source: Any) -> np.ndarray:

@@ -14,13 +14,17 @@ fn water_sides(origin_ws: vec3f, direction_ws: vec3f) -> vec2f {
     return vec2f(max(low.x, low.y), min(high.x, high.y));
 }
 
-// Metres that a ray stays in the water, which ends at its sides and at its level
+// Metres that a ray stays in the water, which ends at its sides and where no wave reaches
 fn water_way(p_ws: vec3f, direction_ws: vec3f) -> f32 {
     let up = (water.level + water.wave_high - p_ws.y) / max(direction_ws.y, 1e-20);
     return max(min(water_sides(p_ws, direction_ws).y, select(WATER_FAR, up, direction_ws.y > 0.0)), 0.0);
 }
 
-fn water_holds(p_ws: vec3f) -> bool {
-    let inside = all(p_ws.xz >= water.low) && all(p_ws.xz <= water.high);
-    return inside && p_ws.y - water.level < wave_height(p_ws.xz);
+// What stands at the borders, such as the walls of a pool, counts as within
+const WATER_MARGIN = 1e-4;  // of the rectangle
+
+// Whether a point is in the water but for the waves over it: within the rectangle, borders included
+fn water_reaches(p_ws: vec3f) -> bool {
+    let margin = WATER_MARGIN * (water.high - water.low);
+    return all(p_ws.xz > water.low - margin) && all(p_ws.xz < water.high + margin);
 }

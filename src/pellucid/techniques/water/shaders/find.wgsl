@@ -18,8 +18,10 @@ fn fs_main(@builtin(position) position: vec4f) -> WaterFound {
         discard;
     }
     let depth = clamp(depth_of(ray.origin + hit.t * ray.direction), drawn, 1.0);
-    return WaterFound(water_record(hit), select(depth, drawn, hit.kind == WATER_FOG));
+    return WaterFound(water_record(hit), select(depth, drawn, hit.kind >= WATER_FOG));
 }
+
+const FIND_COVER = 1e-5;  // what covers an open border lies this share of the way before it, or not at all
 
 // What a ray of the camera meets first
 fn water_first(origin_ws: vec3f, direction_ws: vec3f, t_max: f32) -> WaterHit {
@@ -27,19 +29,23 @@ fn water_first(origin_ws: vec3f, direction_ws: vec3f, t_max: f32) -> WaterHit {
     let sides = water_sides(origin_ws, direction_ws);
     let start = max(sides.x, 0.0);
     let end = min(sides.y, t_max);
-    if start > end {
+    if start > end * (1.0 - FIND_COVER) {
         return WaterHit(WATER_NONE, 0.0, up);
     }
-    let entry = origin_ws + start * direction_ws;
-    let under = entry.y - water.level < wave_height(entry.xz);
-    if under && sides.x > 0.0 {
-        return WaterHit(WATER_SIDE, start, water_side_normal(entry));
+    let under = water_gap(origin_ws, direction_ws, start) < 0.0;
+    if under && start > 0.0 {
+        return WaterHit(WATER_SIDE, start, water_side_normal(origin_ws + start * direction_ws));
     }
-    let meeting = meet_water_from(origin_ws, direction_ws, start, end, under);
-    if meeting.valid {
-        return WaterHit(select(WATER_ABOVE, WATER_BELOW, under), meeting.t, up);
+    let found = water_crossing(origin_ws, direction_ws, start, end, select(1.0, -1.0, under));
+    if found >= 0.0 {
+        return WaterHit(select(WATER_ABOVE, WATER_BELOW, under), found, up);
     }
-    return WaterHit(select(WATER_NONE, WATER_FOG, under), end, up);
+    let holds = water_reaches(origin_ws + t_max * direction_ws);
+    let within = WaterHit(select(WATER_OUT, WATER_FOG, holds), select(end, t_max, holds), up);
+    if under {
+        return within;
+    }
+    return WaterHit(WATER_NONE, 0.0, up);
 }
 
 // Out of the water, of the side that a point on the border is nearest to

@@ -4,7 +4,8 @@ const WATER_NONE = 0u;   // nothing of the water
 const WATER_ABOVE = 1u;  // its surface, from above
 const WATER_BELOW = 2u;  // its surface, from within
 const WATER_SIDE = 3u;   // an open border, from outside
-const WATER_FOG = 4u;    // from within, something else before the surface, or nothing
+const WATER_FOG = 4u;    // from within, something in the water before the surface
+const WATER_OUT = 5u;    // from within, through an open border
 
 struct WaterHit {
     kind: u32,

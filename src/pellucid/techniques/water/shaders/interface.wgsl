@@ -14,17 +14,18 @@ const WATER_GRAZING = 1e-4;  // least cosine between normal and view
 
 // (1 - F) (n_i / n_t)^2 of what the refracted ray sees, F of what the mirrored one sees [born1999, 4.8.3]. All rays go
 // through one place.
-fn interface_radiance(hit: WaterHit, p_ws: vec3f, direction_ws: vec3f) -> vec3f {
+fn interface_radiance(hit: WaterHit, meets: bool, p_ws: vec3f, direction_ws: vec3f) -> vec3f {
     let from_within = hit.kind == WATER_BELOW;
     let at = wave_point(p_ws.xz, footprint_m(p_ws));
-    let up = normalize(vec3f(-at.slope.x, 1.0, -at.slope.y));
-    let outward = select(up, hit.normal, hit.kind == WATER_SIDE);
+    let outward = select(wave_normal(at.slope), hit.normal, hit.kind == WATER_SIDE);
     let n_ws = water_towards(select(outward, -outward, from_within), direction_ws);
     let cos_i = -dot(n_ws, direction_ws);
     let refracted_rays = select(1u, 3u, WATER_DISPERSION);
+    // None for pixels that show no surface: a software driver executes all others with them, but loops it leaves
+    let rays = select(0u, refracted_rays + 1u, meets);
     var radiance = vec3f(0.0);
     var reflected = vec3f(0.0);
-    for (var k = 0u; k <= refracted_rays; k++) {
+    for (var k = 0u; k < rays; k++) {
         let mirrors = k == refracted_rays;
         let n = select(water.n_water[min(k, 2u)], water.n_water.g, !WATER_DISPERSION || mirrors);
         let n_i = select(water.n_outside, n, from_within);
@@ -43,7 +44,10 @@ fn interface_radiance(hit: WaterHit, p_ws: vec3f, direction_ws: vec3f) -> vec3f 
             radiance += weight * water_look(p_ws, way, below);
         }
     }
-    return radiance + water_glitter(p_ws, n_ws, -direction_ws, at.variance);
+    if meets {
+        radiance += water_glitter(p_ws, n_ws, -direction_ws, at.variance);
+    }
+    return radiance;
 }
 
 // What a ray sees, through water where it is within

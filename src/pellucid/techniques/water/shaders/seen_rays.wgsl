@@ -14,7 +14,8 @@ fn seen_rays(p_ws: vec3f, direction_ws: vec3f, below: bool) -> Seen {
     }
     let way = select(1e30, hit.t, hit.valid);
     let inside = water_way(p_ws, direction_ws);
-    let leaves = below && way > inside;
+    let end = start + way * direction_ws;
+    let leaves = below && !(hit.valid && water_reaches(end) && end.y < water.level + water.wave_high);
     let denser = water.n_water / water.n_outside;
     return Seen(radiance * select(vec3f(1.0), denser * denser, leaves), min(way, inside), hit.valid);
 }

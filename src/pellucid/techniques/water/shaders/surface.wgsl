@@ -11,50 +11,55 @@ struct WaterMeeting {
     fold: f32,
 }
 
-const MEET_STEPS = 128u;
-const MEET_REFINEMENTS = 8u;
+const MEET_STEPS = 192u;
+const MEET_REFINEMENTS = 6u;
+const MEET_PIXELS = 0.5;  // crests that stand out by less may be passed
 
-// First crossing at 0 <= t < t_max. Steps are as long as the steepest slope of the waves allows, so that no crest is
-// passed, but at least a part of a texel and of what a pixel covers; the last one is divided by false position.
+// First crossing at 0 <= t < t_max
 fn meet_water(origin_ws: vec3f, direction_ws: vec3f, t_max: f32) -> WaterMeeting {
     let sides = water_sides(origin_ws, direction_ws);
     let start = max(sides.x, 0.0);
-    let under = water_holds(origin_ws + start * direction_ws);
+    let under = water_gap(origin_ws, direction_ws, start) < 0.0;
     return meet_water_from(origin_ws, direction_ws, start, min(sides.y, t_max), under);
 }
 
 // The same between two points of the ray, the first of which is `under` water or not
 fn meet_water_from(origin_ws: vec3f, direction_ws: vec3f, start: f32, end: f32, under: bool) -> WaterMeeting {
-    let side = select(1.0, -1.0, under);
+    let found = water_crossing(origin_ws, direction_ws, start, end, select(1.0, -1.0, under));
+    let p_ws = origin_ws + max(found, 0.0) * direction_ws;
+    let at = wave_point(p_ws.xz, footprint_m(p_ws));
+    return WaterMeeting(found, found >= 0.0, p_ws, wave_normal(at.slope), at.variance, at.fold);
+}
+
+fn wave_normal(slope: vec2f) -> vec3f {
+    return normalize(vec3f(-slope.x, 1.0, -slope.y));
+}
+
+// Way to the first crossing, or -1. Steps are as long as the steepest slope of the waves allows, so that no crest is
+// passed but one that stands out by less than half a pixel. A ray that starts in the surface itself takes a step first.
+// One that goes on to where no wave is has crossed the surface, whatever rounding makes of that.
+fn water_crossing(origin_ws: vec3f, direction_ws: vec3f, start: f32, end: f32, side: f32) -> f32 {
     let slab = water_slab(origin_ws.y - water.level, direction_ws.y);
     let last = min(end, slab.y);
     var t = max(start, slab.x);
-    var meeting = WaterMeeting(last, false, origin_ws, vec3f(0.0, 1.0, 0.0), vec3f(0.0), 1.0);
-    if t > last {
-        return meeting;
-    }
-    let steepness = abs(direction_ws.y) + water.wave_slope * length(direction_ws.xz);
-    var gap = side * water_gap(origin_ws, direction_ws, t);
+    let steepness = abs(direction_ws.y) + water.wave_slope * length(direction_ws.xz) + 1e-9;
+    let parallel = camera_is_orthographic();
+    var gap = max(side * water_gap(origin_ws, direction_ws, t), 0.0);
     var t_before = t;
-    var gap_before = max(gap, 0.0);
-    for (var k = 0u; k < MEET_STEPS; k++) {
-        if gap <= 0.0 || t >= last {
-            break;
-        }
+    var gap_before = gap;
+    for (var k = 0u; k < MEET_STEPS && t < last && (gap > 0.0 || k == 0u); k++) {
         t_before = t;
         gap_before = gap;
-        let least = max(0.25 * water.wave_cell_m, 0.5 * frame.pixel_footprint * t);
-        t = min(t + max(gap / max(steepness, 1e-6), min(least, 0.02 * t + water.wave_cell_m)), last);
+        let pixel = frame.pixel_footprint * select(t, 1.0, parallel);
+        let step = max(gap, MEET_PIXELS * pixel) / steepness;
+        t = select(min(t + max(step, 1e-3 * water.wave_cell_m), last), last, k + 1u == MEET_STEPS);
         gap = side * water_gap(origin_ws, direction_ws, t);
     }
-    meeting.valid = gap <= 0.0;
-    meeting.t = water_refined(origin_ws, direction_ws, vec2f(t_before, t), vec2f(gap_before, gap), side);
-    meeting.p_ws = origin_ws + meeting.t * direction_ws;
-    let at = wave_point(meeting.p_ws.xz, footprint_m(meeting.p_ws));
-    meeting.n_ws = normalize(vec3f(-at.slope.x, 1.0, -at.slope.y));
-    meeting.variance = at.variance;
-    meeting.fold = at.fold;
-    return meeting;
+    let through = last == slab.y && side * direction_ws.y < 0.0;
+    if t > last || (gap > 0.0 && !through) || (gap == 0.0 && t == t_before && !through) {
+        return -1.0;
+    }
+    return water_refined(origin_ws, direction_ws, vec2f(t_before, t), vec2f(gap_before, gap), side);
 }
 
 // Height of a point of a ray over the surface, metres
@@ -70,21 +75,20 @@ fn water_slab(y: f32, dy: f32) -> vec2f {
     return vec2f(min(a, b), max(a, b));
 }
 
-// False position in which an end that stays counts half as much [dowell1971]
+// False position, in which an end that stays twice counts half as much [dowell1971]
 fn water_refined(origin_ws: vec3f, direction_ws: vec3f, t: vec2f, gaps: vec2f, side: f32) -> f32 {
     var at = t;
     var gap = gaps;
-    for (var k = 0u; k < MEET_REFINEMENTS; k++) {
-        let between = gap.x - gap.y;
-        let middle = select(mix(at.x, at.y, saturate(gap.x / between)), at.y, between <= 0.0);
+    var best = vec2f(t.y, abs(gaps.y));
+    var before = 0.0;
+    for (var k = 0u; k < MEET_REFINEMENTS && gap.x > 0.0 && gap.y < 0.0; k++) {
+        let middle = mix(at.x, at.y, gap.x / (gap.x - gap.y));
         let found = side * water_gap(origin_ws, direction_ws, middle);
-        if found > 0.0 {
-            at.x = middle;
-            gap = vec2f(found, 0.5 * gap.y);
-        } else {
-            at.y = middle;
-            gap = vec2f(0.5 * gap.x, found);
-        }
+        let stays = select(1.0, 0.5, found * before > 0.0);
+        at = select(vec2f(at.x, middle), vec2f(middle, at.y), found > 0.0);
+        gap = select(vec2f(stays * gap.x, found), vec2f(found, stays * gap.y), found > 0.0);
+        best = select(best, vec2f(middle, abs(found)), abs(found) < best.y);
+        before = found;
     }
-    return at.y;
+    return best.x;
 }
