@@ -45,7 +45,7 @@ def test_the_exact_factor_goes_from_small_angles_to_grazing() -> None:
     assert not optics.refract_by_factor(total, UP, k).valid.any()
 
 
-# Index, largest angle; largest error of the fitted factor, of the best one found by trying all, of that of small angles.
+# Index, largest angle; largest error of the fitted factor, of the best one found by trying, of that of small angles.
 # The table of docs/sheet.md.
 TABLE = [
     (1.333, 20, 0.046, 0.044, 0.175),

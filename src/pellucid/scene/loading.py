@@ -21,6 +21,7 @@ from pellucid.scene.lights import AreaLight, DirectionalLight, PointLight
 from pellucid.scene.mesh import Mesh
 from pellucid.scene.placement import Light, Origin, SceneObject
 from pellucid.scene.quality import Quality
+from pellucid.scene.refractive_sheet import PICTURES, RefractiveSheet
 from pellucid.scene.refractive_volume import RefractiveVolume
 from pellucid.scene.relief_quality import ReliefQuality
 from pellucid.scene.relief_surface import MAPS, ReliefLayer, ReliefSurface
@@ -85,6 +86,8 @@ def _environment(part: Any, folder: Path) -> Environment:
 def _object(part: Any, folder: Path) -> SceneObject:
     if isinstance(part, schema.ReliefFile):
         return _relief(part, folder)
+    if isinstance(part, schema.SheetFile):
+        return _sheet(part, folder)
     return _mesh(part, folder) if isinstance(part, schema.MeshBase) else _volume(part, folder)
 
 
@@ -244,6 +247,24 @@ def _relief_layer(part: schema.ReliefLayerFile, folder: Path, where: str) -> Rel
     except SceneError as error:
         last = error.field.partition(".")[2] or error.field
         raise SceneError(f"{where}.{last}", error.reason, error.remedy) from error
+
+
+def _sheet(part: schema.SheetFile, folder: Path) -> RefractiveSheet:
+    from pellucid.io.volumes import read_arrays
+
+    given = part.given("type", "mesh", "arrays", "medium")
+    given |= {name: folder / given[name] for name in PICTURES if name in given}
+    if "arrays" in part.model_fields_set:
+        arrays = read_arrays(folder / part.arrays)
+        if not arrays or not set(arrays) <= {"waves", "motion"}:
+            found = f"holds {sorted(arrays)}, neither waves nor motion of a sheet"
+            raise AssetError(folder / part.arrays, found, "it holds waves (H, W) or motion (T, V, 3)")
+        given |= arrays
+    if "mesh" in part.model_fields_set:
+        given["mesh"] = _mesh(part.mesh, folder)
+    if "medium" in part.model_fields_set:
+        given["medium"] = substance(part.medium)
+    return RefractiveSheet(**given)
 
 
 def substance(part: str | float | schema.ColouredMedium) -> Medium:

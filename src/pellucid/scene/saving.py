@@ -18,6 +18,7 @@ from pellucid.scene.brdf import GGX, TabulatedBRDF
 from pellucid.scene.environment import Environment
 from pellucid.scene.lights import AreaLight, DirectionalLight, PointLight
 from pellucid.scene.mesh import Mesh
+from pellucid.scene.refractive_sheet import PICTURES, RefractiveSheet
 from pellucid.scene.refractive_volume import RefractiveVolume
 from pellucid.scene.relief_surface import MAPS, ReliefLayer, ReliefSurface
 from pellucid.scene.scene import Scene
@@ -36,6 +37,11 @@ LOOKS: dict[type, tuple[str, ...]] = {
     ReliefSurface: (
         *("position", "rotation", "scale", "ambient_n", "tile_m", "tiles", "tiling", "technique", "quality"),
         *("dispersion", "absorption", "scattering", "specular_factor", "edges"),
+    ),
+    RefractiveSheet: (
+        *("position", "rotation", "scale", "depth_m", "size_m", "segments", "motion_fps", "ambient_n", "refraction"),
+        *("factor", "fit_angle_deg", "per", "borders", "deviation_m", "reflection", "sphere_rule", "blend", "lit"),
+        *("meshes", "absorption", "show", "error_scale"),
     ),
     ReliefLayer: ("height_m", "base_m", "roughness", "specular", "normal_convention"),
 }
@@ -172,7 +178,32 @@ def _object(thing: Any, label: str, index: int, beside: Sidecars) -> dict[str, A
         medium = {"medium": describe_medium(thing.medium, f"objects[{index}].medium")}
         mesh = _geometry(thing.mesh, f"{label}.mesh", beside) | _stated(thing.mesh, ("shading",))
         return {"type": "relief_surface", "mesh": mesh, **layers, **medium, **_stated(thing, LOOKS[ReliefSurface])}
+    if isinstance(thing, RefractiveSheet):
+        medium = {"medium": describe_medium(thing.medium, f"objects[{index}].medium")}
+        return {"type": "refractive_sheet", **_sheet(thing, label, f"objects[{index}]", beside), **medium}
     raise SceneError(f"objects[{index}]", f"a {type(thing).__name__} cannot be written to a scene file")
+
+
+def _sheet(sheet: RefractiveSheet, label: str, where: str, beside: Sidecars) -> dict[str, Any]:
+    """Pictures by name or beside the file; heights and positions as arrays; what moves by a formula cannot be stated."""
+    for name in ("waves", "motion"):
+        value = getattr(sheet, name)
+        if value is not None and not isinstance(value, np.ndarray):
+            kind = type(value).__name__
+            raise SceneError(f"{where}.{name}", f"{kind} cannot be written to a scene file", "store arrays")
+    said: dict[str, Any] = {}
+    for name in PICTURES:
+        pixels = getattr(sheet, name)
+        if name in sheet.files:
+            said[name] = beside.relative(sheet.files[name][0])
+        elif pixels is not None:
+            said[name] = beside.picture(f"{label}.{name}", pixels)
+    arrays = {name: value for name in ("waves", "motion") if (value := getattr(sheet, name)) is not None}
+    if arrays:
+        said["arrays"] = beside.arrays(label, arrays)
+    if sheet.mesh is not None:
+        said["mesh"] = _geometry(sheet.mesh, f"{label}.mesh", beside) | _stated(sheet.mesh, ("shading",))
+    return said | _stated(sheet, LOOKS[RefractiveSheet])
 
 
 def _proxy(proxy: str | Mesh, label: str, beside: Sidecars) -> dict[str, Any]:

@@ -292,6 +292,7 @@ def _object_tag(data: Any) -> str | None:
         "mesh": ("file", "arrays"),
         "refractive_volume": ("mesh", "array", "volume"),
         "relief_surface": ("solid",),
+        "refractive_sheet": ("picture",),
     }.get(str(kind), ())
     return next((f"{kind}.{source}" for source in sources if source in data), None)
 
@@ -335,6 +336,36 @@ class ReliefFile(Placed):
     edges: StrictStr = UNSET
 
 
+class SheetFile(Placed):
+    """A sheet over a picture; ``arrays`` is an .npz with waves or motion."""
+
+    type: Literal["refractive_sheet"]
+    picture: StrictStr
+    depth_m: Number = UNSET
+    size_m: Number | tuple[Number, Number] = UNSET
+    arrays: StrictStr = UNSET
+    segments: StrictInt = UNSET
+    mesh: MeshFile = UNSET
+    motion_fps: Number = UNSET
+    medium: Substance = UNSET
+    ambient_n: Number = UNSET
+    refraction: StrictStr = UNSET
+    factor: Number = UNSET
+    fit_angle_deg: Number = UNSET
+    per: StrictStr = UNSET
+    borders: StrictStr = UNSET
+    deviation_m: Number = UNSET
+    reflection: StrictStr = UNSET
+    sphere_map: StrictStr = UNSET
+    sphere_rule: StrictStr = UNSET
+    blend: Number = UNSET
+    lit: StrictBool = UNSET
+    meshes: StrictBool = UNSET
+    absorption: Triple = UNSET
+    show: StrictStr = UNSET
+    error_scale: Number = UNSET
+
+
 EnvironmentFile = Annotated[
     Annotated[EnvironmentPicture, Tag("file")]
     | Annotated[StudioEnvironment, Tag("studio")]
@@ -362,11 +393,13 @@ ObjectFile = Annotated[
     | Annotated[VolumeOfMesh, Tag("refractive_volume.mesh")]
     | Annotated[VolumeOfArray, Tag("refractive_volume.array")]
     | Annotated[StoredVolume, Tag("refractive_volume.volume")]
-    | Annotated[ReliefFile, Tag("relief_surface.solid")],
+    | Annotated[ReliefFile, Tag("relief_surface.solid")]
+    | Annotated[SheetFile, Tag("refractive_sheet.picture")],
     _choose(
         _object_tag,
         'needs "type" = "mesh" with "file" or "kind" (plane, box, sphere, torus, checkerboard), '
-        '"type" = "refractive_volume" with "mesh" or "array", or "type" = "relief_surface" with "solid"',
+        '"type" = "refractive_volume" with "mesh" or "array", "type" = "relief_surface" with "solid", '
+        'or "type" = "refractive_sheet" with "picture"',
     ),
 ]
 
