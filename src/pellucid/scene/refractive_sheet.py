@@ -241,8 +241,8 @@ class RefractiveSheet(SceneObject):
             self._check_above("waves", float(self.waves.limits_m[0]))
             return
         heights = checks.array("refractive_sheet.waves", self.waves, (None, None))
-        if max(heights.shape) > MOST_TEXELS:
-            raise SceneError("refractive_sheet.waves", f"are {heights.shape}", f"use at most {MOST_TEXELS} a side")
+        if min(heights.shape) < 2 or max(heights.shape) > MOST_TEXELS:
+            raise SceneError("refractive_sheet.waves", f"are {heights.shape}", f"use 2 to {MOST_TEXELS} a side")
         self._check_above("waves", float(heights.min()))
         store(self, waves=heights)
 

@@ -185,7 +185,7 @@ def _object(thing: Any, label: str, index: int, beside: Sidecars) -> dict[str, A
 
 
 def _sheet(sheet: RefractiveSheet, label: str, where: str, beside: Sidecars) -> dict[str, Any]:
-    """Pictures by name or beside the file; heights and positions as arrays; what moves by a formula cannot be stated."""
+    """Pictures by name or beside the file, heights and positions as arrays; a formula cannot be stated."""
     for name in ("waves", "motion"):
         value = getattr(sheet, name)
         if value is not None and not isinstance(value, np.ndarray):

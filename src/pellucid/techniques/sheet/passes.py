@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pellucid.fields.waves import WaveSource
 from pellucid.gpu import Device, RenderPass
 from pellucid.gpu.modules import declared
 from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT, Targets
@@ -33,7 +34,7 @@ class Body:
 
     Attributes
     ----------
-    item : what the user described. vertices : as they are at `time_s`. index_count : three a triangle.
+    item : what the user described. vertices : as they are at a `moment`. index_count : three a triangle.
     bindings : resources of bind group 0 by their WGSL names, and its "indices".
     """
 
@@ -41,7 +42,7 @@ class Body:
     vertices: np.ndarray
     index_count: int
     bindings: dict[str, Any]
-    time_s: float
+    moment: list[Any]
     params: np.ndarray = field(default_factory=lambda: np.zeros((), SheetParams))
 
     @property
@@ -102,8 +103,9 @@ class SheetTechnique:
     def simulate(self, time_s: float) -> None:
         """Move the sheets that move by themselves to a time."""
         for body in self.bodies:
-            if body.item.is_dynamic and time_s != body.time_s:
-                body.vertices, body.time_s = vertices_of(body.item, time_s), time_s
+            state = _moment(body.item, time_s)
+            if not _same(body.moment, state):
+                body.vertices, body.moment = vertices_of(body.item, time_s), state
                 self.device.write(body.bindings["sheet_vertices"], body.vertices)
 
     def illuminate(self, lights: Sequence[Any], surroundings: Surroundings) -> None:
@@ -131,7 +133,7 @@ class SheetTechnique:
         same = next((b for b in before if _same(_geometry_key(b.item), _geometry_key(item))), None)
         if same is not None:
             before.remove(same)
-            body = Body(item, same.vertices, same.index_count, dict(same.bindings), same.time_s)
+            body = Body(item, same.vertices, same.index_count, dict(same.bindings), same.moment)
         else:
             vertices, faces = vertices_of(item, 0.0), faces_of(item)
             bindings = {
@@ -140,7 +142,7 @@ class SheetTechnique:
                 "indices": self.device.buffer(faces, "index", "sheet indices"),
                 "sheet_sampler": self.device.sampler("linear", "clamp"),
             }
-            body = Body(item, vertices, faces.size, bindings, 0.0)
+            body = Body(item, vertices, faces.size, bindings, _moment(item, 0.0))
         body.bindings["sheet_picture"] = self._picture(item.picture)
         mirrored = item.sphere_map
         body.bindings["sheet_sphere_map"] = self._absent if mirrored is None else self._picture(mirrored)
@@ -218,6 +220,13 @@ def _hits(body: Body, camera: Camera) -> np.ndarray:
 
 def _geometry_key(item: RefractiveSheet) -> list[Any]:
     return [item.waves, item.mesh, item.motion, item.motion_fps, item.extents_m, item.cells]
+
+
+def _moment(item: RefractiveSheet, time_s: float) -> list[Any]:
+    """What decides whether vertices are still true: waves may be disturbed between two pictures of one time."""
+    if not item.is_dynamic:
+        return [0.0, None]
+    return [float(time_s), item.waves.surface(time_s) if isinstance(item.waves, WaveSource) else None]
 
 
 def _same(a: list[Any], b: list[Any]) -> bool:

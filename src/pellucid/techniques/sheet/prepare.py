@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pellucid.errors import SceneError
+from pellucid.fields.waves import WaveSource
+from pellucid.fields.waves.source import bilinear, difference_slopes
 from pellucid.scene.shapes import vertex_normals
 from pellucid.surroundings.resample import area_resample
 from pellucid.techniques.sheet.layouts import SheetVertex
@@ -15,15 +17,6 @@ if TYPE_CHECKING:
     from pellucid.scene import RefractiveSheet
 
 HALF_MAX = 65504.0
-
-
-class WaveMap(NamedTuple):
-    """Heights (H, W) in metres and slopes (H, W, 2) along x and z at cell centres about the middle; (x, z) metres."""
-
-    heights: np.ndarray
-    slopes: np.ndarray
-    tile_m: tuple[float, float]
-    periodic: bool
 
 
 def faces_of(item: RefractiveSheet) -> np.ndarray:
@@ -61,68 +54,32 @@ def _grid(item: RefractiveSheet, time_s: float) -> tuple[np.ndarray, np.ndarray]
     x, z = (v.ravel() for v in np.meshgrid(x, z))
     if item.waves is None:
         return np.stack([x, 0.0 * x, z], 1), np.tile([0.0, 1.0, 0.0], (len(x), 1))
-    waves = wave_map(item, time_s)
-    y, slope_x, slope_z = sampled(waves, x, z).T
-    normals = np.stack([-slope_x, np.ones_like(y), -slope_z], 1)
+    y, slopes = _waves(item, x, z, time_s)
+    normals = np.stack([-slopes[:, 0], np.ones_like(y), -slopes[:, 1]], 1)
     return np.stack([x, y, z], 1), normals / np.linalg.norm(normals, axis=1, keepdims=True)
 
 
-def wave_map(item: RefractiveSheet, time_s: float) -> WaveMap:
-    """The waves of a sheet at a time, with slopes of their own or else central differences."""
+def _waves(item: RefractiveSheet, x: np.ndarray, z: np.ndarray, time_s: float) -> tuple[np.ndarray, np.ndarray]:
+    """Heights (N,) and slopes (N, 2) of the waves of a sheet at places: their own, or central differences."""
     waves: Any = item.waves
-    if isinstance(waves, np.ndarray):
-        (x_low, x_high), (z_low, z_high) = item.extents_m
-        tile_m, periodic = (x_high - x_low, z_high - z_low), False
-        heights, slopes = np.asarray(waves, np.float64), None
+    if isinstance(waves, WaveSource):
+        heights, slopes = waves.at(x, z, time_s)
     else:
-        surface = waves.surface(time_s) if hasattr(waves, "surface") else None
-        heights = np.asarray(waves.advance(time_s) if surface is None else surface.heights, np.float64)
-        slopes = None if surface is None else np.asarray(surface.slopes, np.float64)
-        tile_m = (float(waves.tile_m[0]), float(waves.tile_m[1]))
-        periodic = bool(getattr(waves, "periodic", getattr(waves, "boundary", "") == "periodic"))
-    if not np.isfinite(heights).all():
+        (left, right), (back, front) = item.extents_m
+        moves = hasattr(waves, "advance")
+        grid = np.asarray(waves.advance(time_s) if moves else waves, np.float64)
+        tile_m = waves.tile_m if moves else (right - left, front - back)
+        rows, columns = grid.shape
+        slope = difference_slopes(grid, (tile_m[0] / columns, tile_m[1] / rows), False)
+        column, row = (x / tile_m[0] + 0.5) * columns - 0.5, (z / tile_m[1] + 0.5) * rows - 0.5
+        found = bilinear(np.concatenate([grid[..., None], slope], axis=2), column, row, False)
+        heights, slopes = found[:, 0], found[:, 1:]
+    if not (np.isfinite(heights).all() and np.isfinite(slopes).all()):
         raise SceneError("refractive_sheet.waves", f"hold values that are not finite at {time_s:g} s")
     if heights.min() <= -item.depth_m:
         reason = f"reach {-heights.min():g} metres down at {time_s:g} s, the picture lies {item.depth_m:g} below"
         raise SceneError("refractive_sheet.waves", reason, "make the picture deeper or the waves lower")
-    if slopes is None:
-        slopes = _slopes(heights, tile_m, periodic)
-    return WaveMap(heights, slopes, tile_m, periodic)
-
-
-def _slopes(heights: np.ndarray, tile_m: tuple[float, float], periodic: bool) -> np.ndarray:
-    out = np.zeros((*heights.shape, 2))
-    for k, axis in enumerate((1, 0)):
-        count = heights.shape[axis]
-        if count > 1:
-            ends = [(1, 1) if a == axis else (0, 0) for a in (0, 1)]
-            padded = np.pad(heights, ends, mode="wrap" if periodic else "reflect", **_odd(periodic))
-            ahead, behind = (padded.take(np.arange(s, s + count), axis) for s in (2, 0))
-            out[..., k] = (ahead - behind) * count / (2.0 * tile_m[k])
-    return out
-
-
-def _odd(periodic: bool) -> dict[str, Any]:
-    """Beyond a border that is none, heights go on as they come in."""
-    return {} if periodic else {"reflect_type": "odd"}
-
-
-def sampled(waves: WaveMap, x: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """Height and slopes (N, 3) at places, bilinear between cell centres; periodic, or going on as they end."""
-    stack = np.concatenate([waves.heights[..., None], waves.slopes], axis=2)
-    rows, columns = waves.heights.shape
-    places = []
-    for at, tile, count in ((x, waves.tile_m[0], columns), (z, waves.tile_m[1], rows)):
-        cell = (at / tile + 0.5) * count - 0.5
-        cell = cell if waves.periodic else np.clip(cell, 0.0, count - 1.0)
-        first = np.floor(cell).astype(int)
-        share = (cell - first)[:, None]
-        both = [(first + k) % count if waves.periodic else np.minimum(first + k, count - 1) for k in (0, 1)]
-        places.append((both, share))
-    (i, u), (j, v) = places
-    upper = stack[j[0], i[0]] * (1.0 - u) + stack[j[0], i[1]] * u
-    lower = stack[j[1], i[0]] * (1.0 - u) + stack[j[1], i[1]] * u
-    return np.asarray(upper * (1.0 - v) + lower * v)
+    return np.asarray(heights, np.float64), np.asarray(slopes, np.float64)
 
 
 def picture_levels(picture: np.ndarray) -> list[np.ndarray]:
