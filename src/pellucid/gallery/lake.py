@@ -1,0 +1,134 @@
+"""A lake among hills, about as large as that of [mihalik2008]: ground, stones, trees and reeds from an OBJ file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+
+from pellucid.fields import landscape
+from pellucid.fields.landscape import Ground, Patch
+from pellucid.io.meshes import MeshData
+from pellucid.io.obj import write_obj
+from pellucid.scene import Camera, Mesh, Scene, Water
+from pellucid.scene.shapes import vertex_normals
+
+from . import stage
+
+SIZE_M = 90.0
+
+# Linear base colours
+STONE = (0.27, 0.26, 0.245)
+BARK = (0.085, 0.06, 0.042)
+NEEDLES = (0.022, 0.058, 0.018)
+REED = (0.16, 0.19, 0.06)
+
+
+def lake_surroundings(folder: Path, corners: int = 193, seed: int = 5, trees: int = 110, texels: int = 1024) -> Path:
+    """Writes lake.obj with its materials and the picture of its ground, and returns its path.
+
+    Parameters
+    ----------
+    folder : that exists. corners : of the ground along an edge; 193 make 74 000 of 85 000 triangles.
+    seed : of random numbers. trees : how many. texels : of the map of the ground.
+    """
+    ground = landscape.lake_basin(corners, seed, SIZE_M)
+    rng = np.random.default_rng(seed + 1)
+    trunks, needles = zip(*_forest(ground, trees, rng), strict=True)
+    parts = {
+        "stones": (landscape.joined(_stones(ground, rng)), STONE),
+        "trunks": (landscape.joined(trunks), BARK),
+        "needles": (landscape.joined(needles), NEEDLES),
+        "reeds": (landscape.joined(_reeds(ground, rng)), REED),
+    }
+    soil = ground.patch()
+    picture = landscape.ground_map(ground, texels, seed)
+    data = [
+        MeshData(soil.vertices, soil.faces, _normals(soil), ground.uvs(), (1.0, 1.0, 1.0), picture, "ground"),
+        *(MeshData(p.vertices, p.faces, _normals(p), None, color, None, name) for name, (p, color) in parts.items()),
+    ]
+    write_obj(folder / "lake.obj", data)
+    return folder / "lake.obj"
+
+
+def lake_meshes(folder: Path | None = None, **size: Any) -> list[Mesh]:
+    """The surroundings of the lake as meshes that were written and read; see :func:`lake_surroundings`."""
+    if folder is None:
+        with TemporaryDirectory() as aside:
+            return [mesh.replace(origin=None) for mesh in lake_meshes(Path(aside), **size)]
+    return Mesh.load_all(lake_surroundings(folder, **size), roughness=0.9, specular=0.02)
+
+
+def lake_scene(
+    waves: Any = None, camera: Camera | None = None, sun: Sequence[float] = (34.0, 150.0), folder: Path | None = None,
+    size: dict[str, Any] | None = None, **water: Any,
+) -> Scene:  # fmt: skip
+    """The lake under a clear sky.
+
+    Parameters
+    ----------
+    waves : heights of the water. camera : from the shore when not given.
+    sun : its elevation and azimuth, degrees. folder : keeps the OBJ file. size : of :func:`lake_surroundings`.
+    water : fields of the Water.
+    """
+    sky, lamp = stage.daylight(*sun)
+    lake = Water(**({"extent_m": SIZE_M, "medium": "clear lake", "waves": waves} | water))
+    return Scene(
+        camera or Camera((3.0, 3.2, 33.0), (-1.0, 0.0, 8.0), fov_deg=48.0, far_m=400.0),
+        sky, [lamp], [*lake_meshes(folder, **(size or {})), lake], exposure=0.8, tone_mapping="khronos",
+    )  # fmt: skip
+
+
+def _normals(patch: Patch) -> np.ndarray:
+    return np.asarray(vertex_normals(patch.vertices, patch.faces), np.float32)
+
+
+def _forest(ground: Ground, count: int, rng: np.random.Generator) -> list[tuple[Patch, Patch]]:
+    """Spruces on dry and not too steep ground; they stand in groups."""
+    trees: list[tuple[Patch, Patch]] = []
+    kinds = [landscape.conifer(1.0, seed) for seed in range(6)]
+    steep = Ground(ground.steepness(), ground.size_m)
+    while len(trees) < count:
+        x, z = rng.uniform(-0.47, 0.47, 2) * ground.size_m
+        for dx, dz in rng.normal(0.0, 2.5, (rng.integers(1, 6), 2)):
+            at = np.array([x + dx, 0.0, z + dz])
+            at[1] = ground.height(at[0], at[2])
+            near = abs(at[0]) < 9.0 and at[2] > 0.0  # where the camera stands
+            if at[1] < 1.2 or steep.height(at[0], at[2]) > 0.6 or near:
+                continue
+            high = rng.uniform(3.5, 8.0)
+            turn = rng.uniform(0.0, 6.3)
+            trunk, needles = kinds[rng.integers(len(kinds))]
+            trees.append((trunk.placed(at, turn, high), needles.placed(at, turn, high)))
+    return trees[:count]
+
+
+def _stones(ground: Ground, rng: np.random.Generator) -> list[Patch]:
+    """Boulders along the shore and in the shallows, some of which look out of the water."""
+    stones: list[Patch] = []
+    kinds = [landscape.stone(seed) for seed in range(8)]
+    while len(stones) < 46:
+        x, z = rng.uniform(-0.4, 0.4, 2) * ground.size_m
+        height = float(ground.height(x, z))
+        radius = float(rng.uniform(0.25, 0.5) * (1.0 + 2.2 * rng.random() ** 4))
+        if -1.6 * radius - 0.3 < height < 0.6:
+            squat = radius * np.array([1.0, rng.uniform(0.6, 0.9), rng.uniform(0.75, 1.0)])
+            at = (x, height + 0.25 * radius, z)
+            stones.append(kinds[rng.integers(len(kinds))].placed(at, rng.uniform(0.0, 6.3), squat))
+    return stones
+
+
+def _reeds(ground: Ground, rng: np.random.Generator) -> list[Patch]:
+    """Clumps in water of less than half a metre."""
+    clumps: list[Patch] = []
+    while len(clumps) < 36:
+        x, z = rng.uniform(-0.4, 0.4, 2) * ground.size_m
+        depth = -float(ground.height(x, z))
+        if 0.05 < depth < 0.5:
+            for dx, dz in rng.normal(0.0, 1.0, (3, 2)):
+                at = (x + dx, float(ground.height(x + dx, z + dz)), z + dz)
+                clumps.append(landscape.reeds(40, 1.5 + depth, 0.7, int(rng.integers(1 << 30))).placed(at))
+    return clumps[:36]
