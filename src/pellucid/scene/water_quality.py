@@ -17,6 +17,7 @@ CAUSTICS = ("gpu", "cpu", "none")
 CAUSTIC_CAMERAS = ("refracted", "incident")
 CAUSTIC_INTERSECTIONS = ("march", "iteration")
 FALLBACKS = ("rays", "environment")
+CAMERAS = ("fitted", "mihalik")
 TECHNIQUES = ("best", "fast", "mihalik")
 
 
@@ -33,10 +34,15 @@ class WaterQuality(Value):
     steps : of the iteration, 1 to 64.
     march_steps : of a march, 1 to 256.
     texture_size : side of those pictures, texels, 16 to 8192.
-    field_of_view : how much more than the camera they show, 1 to 4 [mihalik2008, 5.3].
+    cameras : where they are taken from: ``"fitted"`` to the rays of the visible surface, or the camera turned by the
+        ray of its lower border, mirrored, and widened ([mihalik2008, 5.1, 5.2], ``"mihalik"``).
+    field_of_view : how much more than the camera they show, 1 to 4 [mihalik2008, 5.2]; at most, where they are fitted.
+    cull_back_faces : meshes are cut at the surface in these pictures; leave out their backs before, which would be
+        seen in the cut [mihalik2008, 5.1].
     point_distance_m : way along the mirrored ray, metres > 0 (c of [mihalik2008, eq. 6]).
     underside_distance_m : the same from below (m of [mihalik2008, eqs. 13, 15]).
-    fallback : what counts where a picture has no answer: ``"rays"`` to the meshes, or the ``"environment"``.
+    fallback : what counts where a picture has no answer: ``"rays"`` to the meshes, or the ``"environment"``; below the
+        surface that is what the border of the picture shows.
     fresnel : ``"exact"``, or ``"schlick"`` with the exponent `schlick_power` > 0.
     color : attenuation by what the water holds (``"physical"``), or towards one colour [mihalik2008, eqs. 4, 5].
     underside : from below, ``"exact"`` refraction with its window, or the rays of [mihalik2008, eq. 12].
@@ -57,7 +63,9 @@ class WaterQuality(Value):
     steps: int = 3
     march_steps: int = 16
     texture_size: int = 512
+    cameras: str = "fitted"
     field_of_view: float = 1.5
+    cull_back_faces: bool = False
     point_distance_m: float = 1.0
     underside_distance_m: float = 1.5
     fallback: str = "rays"
@@ -86,7 +94,7 @@ class WaterQuality(Value):
     def __post_init__(self) -> None:
         for name, options in _CHOICES.items():
             checks.choice(f"water_quality.{name}", getattr(self, name), options)
-        for name in ("shadows", "god_rays"):
+        for name in ("shadows", "god_rays", "cull_back_faces"):
             checks.flag(f"water_quality.{name}", getattr(self, name))
         for name, (low, high) in _WHOLE.items():
             store(self, **{name: checks.integer(f"water_quality.{name}", getattr(self, name), low=low, high=high)})
@@ -107,6 +115,7 @@ _CHOICES = {
     "refraction": REFRACTIONS,
     "reflection": REFLECTIONS,
     "fallback": FALLBACKS,
+    "cameras": CAMERAS,
     "fresnel": FRESNELS,
     "color": COLORS,
     "underside": UNDERSIDES,
@@ -121,6 +130,8 @@ _PRESETS: dict[str, dict[str, Any]] = {
     "mihalik": {
         "refraction": "iteration",
         "reflection": "point",
+        "cameras": "mihalik",
+        "cull_back_faces": True,
         "fallback": "environment",
         "fresnel": "schlick",
         "color": "mihalik",

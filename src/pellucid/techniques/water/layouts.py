@@ -35,14 +35,12 @@ WaterParams = struct(
     ]
 )
 
-# Cameras whose pictures stand for the scene below and above the surface.
+# Cameras whose pictures stand for the scene: below the surface, above it.
 WaterViews = struct(
     [
-        ("refraction_from_world", "mat4x4f"),
-        ("reflection_from_world", "mat4x4f"),
-        ("refraction_position", "vec3f"),
-        ("refraction_near_m", "f32"),
-        ("reflection_position", "vec3f"),
-        ("reflection_near_m", "f32"),
+        ("clip_from_world", ("mat4x4f", 2)),
+        ("position", ("vec4f", 2)),  # and the nearest metres
+        ("forward", ("vec4f", 2)),  # and the farthest metres, 0 in perspective
+        ("limit", ("vec4f", 2)),  # height that no mesh lies beyond, metres
     ]
 )

@@ -11,9 +11,19 @@ import numpy as np
 from pellucid.gpu import Device, RenderPass
 from pellucid.gpu.modules import declared
 from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT, Targets
-from pellucid.scene.water_quality import COLORS, FRESNELS, REFLECTIONS, REFRACTIONS, WaterQuality, quality_of
+from pellucid.scene.water_quality import (
+    COLORS,
+    FALLBACKS,
+    FRESNELS,
+    REFLECTIONS,
+    REFRACTIONS,
+    UNDERSIDES,
+    WaterQuality,
+    quality_of,
+)
 from pellucid.techniques.water.layouts import WaterParams, WaterViews
 from pellucid.techniques.water.prepare import WaveMaps, parameters, wave_maps
+from pellucid.techniques.water.views import SurfacePictures, needs_pictures
 
 if TYPE_CHECKING:
     from pellucid.scene import Camera
@@ -22,7 +32,7 @@ if TYPE_CHECKING:
 
 HIT_FORMAT = "rgba32float"
 WAVE_NAMES = ("wave_map", "wave_sampler", "wave_moments", "wave_texture")
-NEAREST = ("water_hits", "opaque_color")
+NEAREST = ("water_hits", "opaque_color", "picture_depths")
 
 
 @dataclass
@@ -34,6 +44,7 @@ class Body:
     item : what the user described. quality : what its technique makes of its quality.
     waves : its surface at `time_s`. version : counts changes of the waves.
     bindings : resources of bind group 0 by their WGSL names.
+    pictures : of what is below and above it, where its quality looks things up.
     """
 
     item: Water
@@ -43,6 +54,7 @@ class Body:
     time_s: float = 0.0
     version: int = 0
     params: np.ndarray = field(default_factory=lambda: np.zeros((), WaterParams))
+    pictures: SurfacePictures | None = None
 
     @property
     def constants(self) -> dict[str, float]:
@@ -51,6 +63,8 @@ class Body:
         return {
             "WATER_REFRACTION": float(REFRACTIONS.index(quality.refraction)),
             "WATER_REFLECTION": float(REFLECTIONS.index(quality.reflection)),
+            "WATER_UNDERSIDE": float(UNDERSIDES.index(quality.underside)),
+            "WATER_FALLBACK": float(FALLBACKS.index(quality.fallback)),
             "WATER_FRESNEL": float(FRESNELS.index(quality.fresnel)),
             "WATER_COLOR": float(COLORS.index(quality.color)),
             "WATER_DISPERSION": float(self.item.dispersion and self.item.matter.is_dispersive),
@@ -116,6 +130,10 @@ class WaterTechnique:
         hits = self._target("water_hits", HIT_FORMAT, targets.size)
         bound = {**self._nothing, **body.bindings, **surroundings.bindings}
         bound |= {name: copy for name, (_, copy) in copies.items()}
+        if body.pictures is not None:
+            waves = body.waves.limits_m, body.waves.slope
+            body.pictures.draw(encoder, body.item, body.quality, waves, surroundings, timer)
+            bound |= body.pictures.bindings
         self._pass("find", body.constants).run(
             encoder,
             color=[hits.create_view()],
@@ -143,6 +161,9 @@ class WaterTechnique:
             body = Body(item, quality, wave_maps(item, 0.0), {"wave_sampler": self.device.sampler("linear", "repeat")})
             self._upload(body)
         old = before[number].bindings if number < len(before) else {}
+        if needs_pictures(quality):
+            kept_pictures = before[number].pictures if number < len(before) else None
+            body.pictures = kept_pictures or SurfacePictures(self.device)
         for name, layout in (("water", WaterParams), ("water_views", WaterViews)):
             body.bindings[name] = old.get(name) or self.device.buffer(layout.itemsize, "uniform", name)
         return body
@@ -193,6 +214,6 @@ def _distance(item: Water, camera: Camera) -> float:
 def _absent(device: Device) -> dict[str, Any]:
     """One texel for every picture that a body of water may not have."""
     image = device.texture(size=(1, 1), format="rgba16float", label="absent")
-    names = ("refraction_color", "refraction_depth", "reflection_color", "reflection_depth")
-    moments = {"wave_moments": image.create_view(dimension="2d-array")}
-    return {name: image for name in names} | moments | {"view_sampler": device.sampler("linear", "clamp")}
+    stack = image.create_view(dimension="2d-array")
+    names = ("wave_moments", "picture_colors", "picture_depths")
+    return {name: stack for name in names} | {"view_sampler": device.sampler("linear", "clamp")}

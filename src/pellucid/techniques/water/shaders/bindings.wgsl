@@ -7,10 +7,8 @@
 @group(0) @binding(2) var wave_sampler: sampler;
 @group(0) @binding(3) var wave_moments: texture_2d_array<f32>;  // with levels: mean and second moments of slopes
 @group(0) @binding(4) var water_hits: texture_2d<f32>;  // what the search found, see hit.wgsl
-@group(0) @binding(5) var refraction_color: texture_2d<f32>;
-@group(0) @binding(6) var refraction_depth: texture_2d<f32>;
-@group(0) @binding(7) var reflection_color: texture_2d<f32>;
-@group(0) @binding(8) var reflection_depth: texture_2d<f32>;
+@group(0) @binding(5) var picture_colors: texture_2d_array<f32>;  // of what lies below the surface, above it
+@group(0) @binding(6) var picture_depths: texture_2d_array<f32>;  // reversed
 @group(0) @binding(9) var view_sampler: sampler;
 @group(0) @binding(10) var<uniform> water_views: WaterViews;
 @group(0) @binding(11) var opaque_color: texture_2d<f32>;  // what was drawn before

@@ -6,37 +6,73 @@
 
 override WATER_REFRACTION: u32 = 0u;  // water_quality.REFRACTIONS
 override WATER_REFLECTION: u32 = 0u;  // water_quality.REFLECTIONS
+override WATER_UNDERSIDE: u32 = 0u;   // water_quality.UNDERSIDES
+override WATER_FALLBACK: u32 = 0u;    // water_quality.FALLBACKS
+
+const SEEN_BY_RAYS = 0u;
 
 fn seen_below(p_ws: vec3f, direction_ws: vec3f) -> Seen {
-    if WATER_REFRACTION == 1u {
-        return seen_march(p_ws, direction_ws, true);
-    }
-    if WATER_REFRACTION == 2u {
-        return seen_iteration(p_ws, direction_ws);
-    }
-    return seen_rays(p_ws, direction_ws, true);
+    return seen_along(p_ws, direction_ws, true);
 }
 
 fn seen_above(p_ws: vec3f, direction_ws: vec3f) -> Seen {
-    if WATER_REFLECTION == 1u {
-        return seen_march(p_ws, direction_ws, false);
-    }
-    if WATER_REFLECTION == 2u {
-        return seen_point(p_ws, direction_ws);
-    }
-    if WATER_REFLECTION == 3u {
-        return Seen(environment_radiance(direction_ws), WATER_FAR, false);
-    }
-    return seen_rays(p_ws, direction_ws, false);
+    return seen_along(p_ws, direction_ws, false);
 }
 
-// Either of them. Where both send rays there is one place that does: all pixels would execute each.
+// Either of them, each way of looking in one place: a software driver executes all of them for all pixels.
 fn seen_along(p_ws: vec3f, direction_ws: vec3f, below: bool) -> Seen {
     if WATER_REFRACTION == 0u && WATER_REFLECTION == 0u {
         return seen_rays(p_ws, direction_ws, below);
     }
-    if below {
-        return seen_below(p_ws, direction_ws);
+    let place = seen_place(p_ws, direction_ws, below);
+    let sends_rays = select(WATER_REFLECTION, WATER_REFRACTION, below) == SEEN_BY_RAYS
+        || (WATER_FALLBACK == 0u && place.found == PICTURE_UNKNOWN);
+    var seen = Seen(vec3f(0.0), 0.0, false);
+    if WATER_FALLBACK == 0u || WATER_REFRACTION == SEEN_BY_RAYS || WATER_REFLECTION == SEEN_BY_RAYS {
+        if sends_rays {
+            seen = seen_rays(p_ws, direction_ws, below);
+        }
     }
-    return seen_above(p_ws, direction_ws);
+    if !sends_rays {
+        seen = seen_in_picture(place, p_ws, direction_ws, below);
+    }
+    return seen;
+}
+
+// Where the ray ends in the picture of its side
+fn seen_place(p_ws: vec3f, direction_ws: vec3f, below: bool) -> PicturePlace {
+    let layer = select(1u, 0u, below);
+    let underside = WATER_UNDERSIDE == 1u && frame.camera_position.y < p_ws.y;
+    let means = select(select(WATER_REFLECTION, WATER_REFRACTION, below), 3u, underside);
+    var place = PicturePlace(vec2f(0.0), WATER_FAR, PICTURE_NOTHING);
+    if WATER_REFRACTION == 1u || WATER_REFLECTION == 1u {
+        if means == 1u {
+            place = seen_march(layer, p_ws, direction_ws);
+        }
+    }
+    if WATER_REFRACTION == 2u {
+        if means == 2u && below {
+            place = seen_iteration(layer, p_ws, direction_ws);
+        }
+    }
+    if WATER_REFLECTION == 2u || WATER_UNDERSIDE == 1u {
+        if underside || (means == 2u && !below) {
+            let way = select(water.point_distance_m, water.underside_distance_m, underside);
+            place = seen_point(layer, p_ws, direction_ws, way);
+        }
+    }
+    return place;
+}
+
+fn seen_in_picture(place: PicturePlace, p_ws: vec3f, direction_ws: vec3f, below: bool) -> Seen {
+    let layer = select(1u, 0u, below);
+    // Above, what no picture shows is the sky; below, what the border of the picture shows.
+    let open = place.found == PICTURE_NOTHING || (place.found == PICTURE_UNKNOWN && !below);
+    let shown = textureSampleLevel(picture_colors, view_sampler, place.uv, layer, 0.0).rgb;
+    let inside = water_way(p_ws, direction_ws);
+    let way = select(place.t, WATER_FAR, open);
+    let denser = water.n_water / water.n_outside;
+    let leaves = below && way > inside;
+    let radiance = select(shown, environment_radiance(direction_ws), open) * select(vec3f(1.0), denser * denser, leaves);
+    return Seen(radiance, select(way, min(way, inside), below), !open);
 }
