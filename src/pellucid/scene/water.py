@@ -38,7 +38,8 @@ class Water(SceneObject):
     technique : ``"best"`` draws all that `quality` asks for, ``"fast"`` from pictures instead of rays, ``"mihalik"`` as
         [mihalik2008]; what `quality` says otherwise counts in each.
     quality : how it is drawn.
-    foam : how much foam covers folding crests, 0 to 1.
+    foam : crests foam where waves fold the surface to less than this share of its area at rest, 0 (none) to 1. Only
+        waves that move water sideways fold it, such as ``fields.waves.Ocean``.
     color, clarity_per_m : colour of deep water, and how fast it covers what is below, 1/m, where the quality's colour
         is ``"mihalik"`` (C_water and k of [mihalik2008, eqs. 4, 5]).
     dispersion : refract red, green and blue apart.

@@ -22,7 +22,7 @@ from pellucid.scene.water_quality import (
     quality_of,
 )
 from pellucid.techniques.water.layouts import WaterParams, WaterViews
-from pellucid.techniques.water.prepare import WaveMaps, parameters, wave_maps
+from pellucid.techniques.water.prepare import WaveMaps, parameters, same_surfaces, surfaces_of, wave_maps
 from pellucid.techniques.water.views import SurfacePictures, needs_pictures
 
 if TYPE_CHECKING:
@@ -67,6 +67,7 @@ class Body:
             "WATER_FALLBACK": float(FALLBACKS.index(quality.fallback)),
             "WATER_FRESNEL": float(FRESNELS.index(quality.fresnel)),
             "WATER_COLOR": float(COLORS.index(quality.color)),
+            "WATER_FOAM": float(self.item.foam > 0.0),
             "WATER_DISPERSION": float(self.item.dispersion and self.item.matter.is_dispersive),
         }
 
@@ -102,11 +103,13 @@ class WaterTechnique:
     def simulate(self, time_s: float) -> None:
         """Move the waves to a time."""
         for body in self.bodies:
-            if body.item.waves is not None and time_s != body.time_s:
-                body.waves, body.time_s = wave_maps(body.item, time_s), time_s
+            surfaces = surfaces_of(body.item.waves, time_s)
+            body.time_s = time_s
+            if not same_surfaces(surfaces, body.waves.surfaces):
+                body.waves = wave_maps(body.item, surfaces)
                 body.version += 1
                 self._upload(body)
-                self._write(body)
+            self._write(body)
 
     def illuminate(self, lights: Sequence[Any], surroundings: Surroundings) -> None:
         """Light below the surface."""
@@ -158,7 +161,8 @@ class WaterTechnique:
             kept = {name: same.bindings[name] for name in WAVE_NAMES}
             body = Body(item, quality, same.waves, kept, same.time_s, same.version)
         else:
-            body = Body(item, quality, wave_maps(item, 0.0), {"wave_sampler": self.device.sampler("linear", "repeat")})
+            waves = wave_maps(item, surfaces_of(item.waves, 0.0))
+            body = Body(item, quality, waves, {"wave_sampler": self.device.sampler("linear", "repeat")})
             self._upload(body)
         old = before[number].bindings if number < len(before) else {}
         if needs_pictures(quality):

@@ -27,6 +27,7 @@ class WaveMaps:
     tiles : (L, 4) float32: width and depth in metres, 1 where it repeats, 0.
     limits_m : lowest and highest sum of heights at any time.
     slope : steepest slope of the moment. cell_m : side of a texel of the finest layer.
+    surfaces : what the sources gave.
     """
 
     texels: np.ndarray
@@ -34,6 +35,7 @@ class WaveMaps:
     limits_m: tuple[float, float]
     slope: float
     cell_m: float
+    surfaces: tuple[Any, ...] = ()
 
 
 def sources_of(waves: Any) -> Sequence[Any]:
@@ -43,8 +45,18 @@ def sources_of(waves: Any) -> Sequence[Any]:
     return tuple(getattr(waves, "layers", (waves,)))
 
 
-def wave_maps(item: Water, time_s: float) -> WaveMaps:
-    """The waves of a body of water at a time.
+def surfaces_of(waves: Any, time_s: float) -> tuple[Any, ...]:
+    """What each layer gives for a time: a `WaveSurface`, or heights alone."""
+    return tuple(s.surface(time_s) if hasattr(s, "surface") else s.advance(time_s) for s in sources_of(waves))
+
+
+def same_surfaces(a: tuple[Any, ...], b: tuple[Any, ...]) -> bool:
+    """Whether nothing moved: sources give the same object as long as that is so."""
+    return len(a) == len(b) and all(x is y for x, y in zip(a, b, strict=True))
+
+
+def wave_maps(item: Water, surfaces: tuple[Any, ...]) -> WaveMaps:
+    """The waves of a body of water as its sources gave them.
 
     Raises
     ------
@@ -58,22 +70,19 @@ def wave_maps(item: Water, time_s: float) -> WaveMaps:
     if len(sources) > WAVE_LAYERS:
         raise SceneError("water.waves", f"are {len(sources)} layers", f"add up at most {WAVE_LAYERS}")
     rows, columns = (max(s.shape[axis] for s in sources) for axis in (0, 1))
-    layers = [_layer(source, time_s, (rows, columns)) for source in sources]
+    pairs = zip(sources, surfaces, strict=True)
+    layers = [_layer(source, surface, (rows, columns)) for source, surface in pairs]
     tiles = np.array([[*s.tile_m, _repeats(s), 0.0] for s in sources], np.float32)
     low, high = (sum(float(s.limits_m[k]) for s in sources) for k in (0, 1))
     cells = [(s.tile_m[0] / columns, s.tile_m[1] / rows) for s in sources]
     slope = sum(_steepest(texels[..., 0], cell) for texels, cell in zip(layers, cells, strict=True))
     cell = min(min(s.tile_m[0] / s.shape[1], s.tile_m[1] / s.shape[0]) for s in sources)
-    return WaveMaps(np.stack(layers), tiles, (low, high), slope, float(cell))
+    return WaveMaps(np.stack(layers), tiles, (low, high), slope, float(cell), surfaces)
 
 
-def _layer(source: Any, time_s: float, shape: tuple[int, int]) -> np.ndarray:
-    if hasattr(source, "surface"):
-        surface = source.surface(time_s)
-        heights, slopes, fold = surface.heights, surface.slopes, surface.fold
-    else:
-        heights, slopes, fold = source.advance(time_s), None, None
-    heights = np.asarray(heights, np.float32)
+def _layer(source: Any, surface: Any, shape: tuple[int, int]) -> np.ndarray:
+    slopes, fold = getattr(surface, "slopes", None), getattr(surface, "fold", None)
+    heights = np.asarray(getattr(surface, "heights", surface), np.float32)
     if not np.isfinite(heights).all():
         raise SceneError("water.waves", "give heights that are not finite", "give finite heights in metres")
     if slopes is None:

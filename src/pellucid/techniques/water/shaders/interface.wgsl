@@ -1,6 +1,7 @@
 // Radiance that the surface of water sends to a viewer on either side of it.
 //!import optics/fresnel
 //!import optics/snell
+//!import techniques/water/shaders/foam
 //!import techniques/water/shaders/glitter
 //!import techniques/water/shaders/hit
 //!import techniques/water/shaders/seen
@@ -46,6 +47,10 @@ fn interface_radiance(hit: WaterHit, meets: bool, p_ws: vec3f, direction_ws: vec
     }
     if meets {
         radiance += water_glitter(p_ws, n_ws, -direction_ws, at.variance);
+        if WATER_FOAM {
+            let cover = foam_cover(p_ws.xz, at.fold, footprint_m(p_ws));
+            radiance = mix(radiance, foam_radiance(p_ws, wave_normal(at.slope), from_within), cover);
+        }
     }
     return radiance;
 }
