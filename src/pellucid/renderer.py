@@ -104,9 +104,9 @@ class Renderer:
         encoder = self.device.wgpu.create_command_encoder()
         self._finish.draw(encoder, self._targets.color, self._display.create_view(), timer)
         self._submit(encoder, timer, timings)
-        display = self.device.read_texture(self._display)[..., :3].copy()
+        display = self.device.read_texture(self._display)[..., :3]
         timings["total"] = 1e3 * (clock.perf_counter() - begun)
-        return Frame(mean[..., :3].copy(), _metres(depth, scene.camera), display, timings)
+        return Frame(mean[..., :3], _metres(depth, scene.camera), display, timings)
 
     def illuminate(
         self, scene: Scene, volume: RefractiveVolume, progress: Callable[[float], None] | None = None

@@ -318,14 +318,31 @@ class Device:
         width, height = max(1, texture.width >> mip), max(1, texture.height >> mip)
         row = width * channels * np.dtype(dtype).itemsize
         padded = -(-row // 256) * 256
-        staging = self.buffer(padded * height, "storage", "texture read-back")
+        staging = self._staging(padded * height)
         encoder = self.wgpu.create_command_encoder()
         source = {"texture": texture, "mip_level": mip, "origin": (0, 0, layer)}
         target = {"buffer": staging, "bytes_per_row": padded, "rows_per_image": height}
         encoder.copy_texture_to_buffer(source, target, (width, height, 1))
         self.wgpu.queue.submit([encoder.finish()])
-        rows = self.read(staging, np.uint8, (height, padded))[:, :row]
-        return np.ascontiguousarray(rows).view(dtype).reshape(height, width, channels)
+        staging.map_sync("READ", 0, padded * height)
+        try:
+            mapped = staging.read_mapped(0, padded * height, copy=False)
+            item = np.dtype(dtype).itemsize
+            strides = (padded, channels * item, item)
+            return np.ndarray((height, width, channels), dtype, mapped, strides=strides).copy()
+        finally:
+            staging.unmap()
+
+    def _staging(self, nbytes: int) -> Any:
+        """A buffer that pictures are read back through; kept, for fresh memory costs as much as the copy."""
+        import wgpu
+
+        kept = self.cache.get("staging")
+        if kept is None or not nbytes <= kept.size <= 8 * nbytes + 65536:
+            with self._memory("texture read-back", f"{nbytes} bytes"):
+                usage = wgpu.BufferUsage.MAP_READ | wgpu.BufferUsage.COPY_DST
+                self.cache["staging"] = kept = self.wgpu.create_buffer(size=nbytes, usage=usage)
+        return kept
 
     def sampler(self, filter: str = "linear", address: Any = "clamp", compare: str | None = None) -> Any:
         """A sampler; `address` is "clamp", "repeat" or one of them for each of u, v, w."""
