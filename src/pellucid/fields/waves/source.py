@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -107,9 +108,9 @@ class WaveSource(ABC):
         x_m, z_m : metres from the middle.
         """
         found = self.surface(time_s)
-        stacked = np.concatenate([found.heights[..., None], found.slopes], axis=-1)
-        values = bilinear(stacked, *self.places(x_m, z_m), self.periodic)
-        return values[..., 0], values[..., 1:]
+        planes = (found.heights, found.slopes[..., 0], found.slopes[..., 1])
+        heights, along_x, along_z = bilinear(planes, *self.places(x_m, z_m), self.periodic)
+        return heights, np.stack([along_x, along_z], axis=-1)
 
     def places(self, x_m: npt.ArrayLike, z_m: npt.ArrayLike) -> tuple[Array, Array]:
         """Columns and rows, whole at the centres of cells, of places in metres from the middle."""
@@ -145,22 +146,31 @@ def difference_slopes(heights: Array, cell: tuple[float, float], periodic: bool)
     return slopes
 
 
-def bilinear(values: Array, column: Array, row: Array, periodic: bool) -> Singles:
-    """(..., C) values between the centres of cells, of (H, W, C) values and (...) columns and rows."""
-    rows, columns, channels = values.shape
-    flat = values.reshape(-1, channels)
+def bilinear(planes: Sequence[Array], column: Array, row: Array, periodic: bool) -> list[Singles]:
+    """(...) values between the centres of cells, of each of several (H, W) planes, at (...) columns and rows.
+
+    Plane by plane: NumPy is ten times as slow with the channels innermost.
+    """
+    rows, columns = planes[0].shape
     i, j = np.floor(column), np.floor(row)
-    a, b = (np.asarray(part, np.float32)[..., None] for part in (column - i, row - j))
-    i, j = i.astype(np.intp), j.astype(np.intp)
-    if periodic:
-        left, right = np.remainder(i, columns), np.remainder(i + 1, columns)
-        top, bottom = np.remainder(j, rows) * columns, np.remainder(j + 1, rows) * columns
-    else:
-        left, right = np.clip(i, 0, columns - 1), np.clip(i + 1, 0, columns - 1)
-        top, bottom = np.clip(j, 0, rows - 1) * columns, np.clip(j + 1, 0, rows - 1) * columns
-    upper = flat.take(top + left, 0)
-    upper += a * (flat.take(top + right, 0) - upper)
-    lower = flat.take(bottom + left, 0)
-    lower += a * (flat.take(bottom + right, 0) - lower)
-    upper += b * (lower - upper)
-    return np.asarray(upper, np.float32)
+    a, b = (np.asarray(part, np.float32) for part in (column - i, row - j))
+    left, right = _lines(i.astype(np.int32), columns, periodic)
+    top, bottom = (line * columns for line in _lines(j.astype(np.int32), rows, periodic))
+    corners = [(first + second).astype(np.intp) for first in (top, bottom) for second in (left, right)]
+    found = []
+    for plane in planes:
+        # Indices are inside: "wrap" only spares NumPy a copy that it makes for the case that they are not.
+        upper, upper_right, lower, lower_right = (plane.reshape(-1).take(at, mode="wrap") for at in corners)
+        upper = upper + a * (upper_right - upper)
+        lower = lower + a * (lower_right - lower)
+        found.append(np.asarray(upper + b * (lower - upper), np.float32))
+    return found
+
+
+def _lines(first: Array, count: int, periodic: bool) -> tuple[Array, Array]:
+    """Numbers of two neighbouring rows or columns that there are."""
+    if not periodic:
+        return np.clip(first, 0, count - 1), np.clip(first + 1, 0, count - 1)
+    if count & (count - 1) == 0:
+        return first & (count - 1), (first + 1) & (count - 1)
+    return np.remainder(first, count), np.remainder(first + 1, count)
