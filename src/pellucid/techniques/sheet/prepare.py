@@ -72,8 +72,8 @@ def _waves(item: RefractiveSheet, x: np.ndarray, z: np.ndarray, time_s: float) -
         rows, columns = grid.shape
         slope = difference_slopes(grid, (tile_m[0] / columns, tile_m[1] / rows), False)
         column, row = (x / tile_m[0] + 0.5) * columns - 0.5, (z / tile_m[1] + 0.5) * rows - 0.5
-        found = bilinear(np.concatenate([grid[..., None], slope], axis=2), column, row, False)
-        heights, slopes = found[:, 0], found[:, 1:]
+        heights, along_x, along_z = bilinear([grid, slope[..., 0], slope[..., 1]], column, row, False)
+        slopes = np.stack([along_x, along_z], axis=1)
     if not (np.isfinite(heights).all() and np.isfinite(slopes).all()):
         raise SceneError("refractive_sheet.waves", f"hold values that are not finite at {time_s:g} s")
     if heights.min() <= -item.depth_m:
