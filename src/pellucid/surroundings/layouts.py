@@ -154,13 +154,13 @@ SubmersionParams = struct(
             ("vec4f", MAX_WATERS),
         ),  # level; highest wave over it; first layer of maps; reach of their depth, m
         ("index", ("vec4f", MAX_WATERS)),  # over that above, for red, green, blue
-        ("absorption", ("vec4f", MAX_WATERS)),  # 1/m; 1 where meshes throw shadows
+        ("absorption", ("vec4f", MAX_WATERS)),  # 1/m
         ("scattering", ("vec4f", MAX_WATERS)),  # 1/m; mean cosine
         ("sky", ("vec4f", MAX_WATERS)),  # irradiance of the sky just below a level surface, over its intensity
         ("sky_axis", ("vec4f", MAX_WATERS)),  # unit, where that comes from; space of the environment
         ("ground", ("vec4f", MAX_WATERS)),  # irradiance from below, likewise
         ("window", ("vec4f", MAX_WATERS)),  # share of matt light that the surface throws back; sine^2 of Snell's window
-        ("slope", ("vec4f", MAX_WATERS * MAX_WATER_LIGHTS)),  # of the camera of each map, horizontal way over depth
+        ("slope", ("vec4f", MAX_WATERS * MAX_WATER_LIGHTS)),  # of the camera of each map, horizontal way over depth; 1 for shadows
         (
             "down",
             ("vec4f", MAX_WATERS * DIFFUSE_ENTRIES),

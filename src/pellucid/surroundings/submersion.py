@@ -53,7 +53,7 @@ class WaterRegion:
     absorption_per_m, scattering_per_m : by channel. asymmetry : mean cosine of the scattering angle.
     reach_m : how far below the highest wave meshes are told apart by the maps.
     slopes : (x, z) of the camera of each map, horizontal way over depth, towards the light.
-    shadows : whether meshes throw any.
+    shadows : by map, whether meshes throw any.
     """
 
     level_m: float
@@ -66,7 +66,7 @@ class WaterRegion:
     asymmetry: float = 0.0
     reach_m: float = 100.0
     slopes: tuple[tuple[float, float], ...] = ()
-    shadows: bool = True
+    shadows: tuple[bool, ...] = ()
 
 
 @dataclass
@@ -159,12 +159,13 @@ class Submersion:
         p["bounds"][k] = *region.low_m, *region.high_m
         p["level"][k] = region.level_m, region.limits_m[1], self.layer(k, 0), region.reach_m
         p["index"][k, :3] = region.n
-        p["absorption"][k] = *region.absorption_per_m, float(region.shadows)
+        p["absorption"][k, :3] = region.absorption_per_m
         p["scattering"][k] = *region.scattering_per_m, region.asymmetry
         p["sky"][k, :3], p["sky_axis"][k, :3], p["ground"][k, :3] = sky.irradiance, sky.axis, sky.ground
         p["window"][k] = *sky.back, min(1.0 / region.n[1] ** 2, 1.0)
         for light, slope in enumerate(region.slopes[:MAX_WATER_LIGHTS]):
             p["slope"][k * MAX_WATER_LIGHTS + light, :2] = slope
+            p["slope"][k * MAX_WATER_LIGHTS + light, 2] = light < len(region.shadows) and region.shadows[light]
         down, back = diffuse_tables(1.0, region.n)
         rows = slice(k * DIFFUSE_ENTRIES, (k + 1) * DIFFUSE_ENTRIES)
         p["down"][rows], p["back"][rows] = down / np.maximum(down[-1], 1e-9), back

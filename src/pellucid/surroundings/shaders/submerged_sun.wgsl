@@ -37,12 +37,13 @@ fn submerged_beam(light: u32, p_ws: vec3f, n_ws: vec3f, direction: vec3f, at: Su
     let path_m = max(level_m + submerged_wave(at.water, entry) - p_ws.y, 0.0) / direction.y;
     let layer = lights[light].water_layer;
     if layer >= 0 {
-        let slope = submersion.slope[at.water * MAX_WATER_LIGHTS + u32(layer)].xy;
+        let camera = submersion.slope[at.water * MAX_WATER_LIGHTS + u32(layer)];
+        let slope = camera.xy;
         let uv = submerged_uv(at.water, submerged_entry(p_ws, level_m, slope));
         if all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0)) {
             let map = u32(submersion.level[at.water].z) + u32(layer);
             share = textureSampleLevel(submerged_light, caustic_sampler, uv, map, 0.0).rgb;
-            share *= submerged_visibility(at.water, map, p_ws, n_ws, slope);
+            share *= mix(1.0, submerged_visibility(at.water, map, p_ws, n_ws, slope), camera.z);
         }
     }
     return share * exp(-extinction * path_m);
@@ -65,5 +66,5 @@ fn submerged_visibility(water: u32, map: u32, p_ws: vec3f, n_ws: vec3f, slope: v
         let corner = vec2f(f32(k & 1), f32(k >> 1)) * 2.0 - 1.0;
         sum += textureSampleCompareLevel(submerged_depth, shadow_sampler, uv + 0.5 * corner / size, map, depth);
     }
-    return mix(1.0, 0.25 * sum, submersion.absorption[water].a);
+    return 0.25 * sum;
 }

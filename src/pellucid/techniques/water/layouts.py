@@ -44,3 +44,26 @@ WaterViews = struct(
         ("limit", ("vec4f", 2)),  # height that no mesh lies beyond, metres
     ]
 )
+
+# The light of one lamp through one surface, see caustics.py.
+CausticParams = struct(
+    [
+        ("to_light", "vec3f"),  # unit, above the water
+        ("layer", "u32"),  # of the maps of surroundings.submersion
+        ("index", "vec3f"),  # of the water over that above, by channel
+        ("reach_m", "f32"),  # of the depth maps, below the highest and above the lowest wave
+        ("slope", "vec2f"),  # of the camera below the surface, horizontal way over depth
+        ("slope_above", "vec2f"),  # along the light above it
+        ("sun_slope", "f32"),  # tangent of the radius of the lamp as it is seen, in the water
+        ("focus", "f32"),  # 1; 0 to leave out what waves do to the density
+        ("loss", "f32"),  # 1; 0 to leave out what the surface reflects
+        ("shadows", "f32"),  # 1; 0 for a lamp without any
+        ("reach_above_m", "f32"),
+        ("channels", "u32"),  # 3 with dispersion, else 1
+        ("steps", "u32"),  # of the iteration
+        ("above", "f32"),  # of the depth pass: 1 for what is over the surface
+    ]
+)
+
+# A photon of one channel that stands for a cell of the surface.
+CausticBeam = struct([("landed", "vec2f"), ("flux", "f32"), ("depth_m", "f32")])

@@ -21,6 +21,7 @@ from pellucid.scene.water_quality import (
     WaterQuality,
     quality_of,
 )
+from pellucid.techniques.water.caustics import WaterLight
 from pellucid.techniques.water.layouts import WaterParams, WaterViews
 from pellucid.techniques.water.prepare import WaveMaps, parameters, same_surfaces, surfaces_of, wave_maps
 from pellucid.techniques.water.views import SurfacePictures, needs_pictures
@@ -86,12 +87,15 @@ class WaterTechnique:
         self._passes: dict[Any, RenderPass] = {}
         self._targets: dict[str, Any] = {}
         self._nothing = _absent(device)
+        self._light = WaterLight(device)
 
     @property
     def nbytes(self) -> int:
         """Bytes of GPU memory held."""
         screen = sum(t.width * t.height * (4 if t.format == DEPTH_FORMAT else 16) for t in self._targets.values())
-        return screen + sum(body.waves.texels.nbytes + WaterParams.itemsize for body in self.bodies)
+        return (
+            screen + self._light.nbytes + sum(body.waves.texels.nbytes + WaterParams.itemsize for body in self.bodies)
+        )
 
     def prepare(self, items: Sequence[Water], surroundings: Surroundings) -> None:
         """Make waves resident that are new, and write the parameters of every body of water."""
@@ -112,7 +116,8 @@ class WaterTechnique:
             self._write(body)
 
     def illuminate(self, lights: Sequence[Any], surroundings: Surroundings) -> None:
-        """Light below the surface."""
+        """Light below the surface: maps of what comes through it, kept until something of that moves."""
+        self._light.update(self.bodies, lights, surroundings)
 
     def draw(
         self, encoder: Any, targets: Targets, camera: Camera, surroundings: Surroundings, timer: Any = None

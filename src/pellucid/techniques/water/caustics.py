@@ -1,0 +1,274 @@
+"""Light of lamps far away that comes through the surface of water: shadows, and caustics on what lies below.
+
+For each body of water and each such lamp one map lies on the level, under a camera parallel to the light
+[mihalik2008, 8]. First the meshes are drawn from there, below the surface and above it. Then a photon for each cell of
+the surface is refracted and followed to the first mesh, and what it carries is summed where the camera sees it land.
+All is kept until the lamp, the meshes, the water or its waves change; where waves alone move, meshes are not drawn again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pellucid.gpu.kernel import ComputeKernel, RenderPass
+from pellucid.scene import DirectionalLight
+from pellucid.surroundings.layouts import MAX_WATER_LIGHTS
+from pellucid.surroundings.submersion import DEPTH_FORMAT, WaterRegion, refracted_slope
+from pellucid.techniques.water.layouts import CausticBeam, CausticParams
+
+if TYPE_CHECKING:
+    from pellucid.gpu import Device
+    from pellucid.scene.water_quality import WaterQuality
+    from pellucid.surroundings import Surroundings
+
+SHADERS = "techniques/water/shaders/"
+ROW = 64  # cells of a workgroup, in a row as in memory
+DEPTH_SIZE = 1024  # texels a side of what the camera along a light sees
+OPEN_M = 10.0  # depth of water that nothing lies in, for what waves focus there
+LOWEST_SUN = 1e-3  # sine of the least elevation
+
+
+@dataclass
+class Lamp:
+    """A lamp over one body of water.
+
+    Attributes
+    ----------
+    params : () record of `layouts.CausticParams`. buffer : the same on the device.
+    depth_buffers : the same for the two passes of depth.
+    """
+
+    params: np.ndarray
+    buffer: Any
+    depth_buffers: list[Any] = field(default_factory=list)
+
+
+class WaterLight:
+    """Maps of the light below all bodies of water.
+
+    Parameters
+    ----------
+    device : where they are made.
+
+    Attributes
+    ----------
+    photon_runs, depth_runs : how often photons were followed, and meshes drawn from a lamp.
+    """
+
+    def __init__(self, device: Device) -> None:
+        self.device = device
+        self.photon_runs = self.depth_runs = 0
+        self._kernels: dict[Any, Any] = {}
+        self._lamps: dict[tuple[int, int], Lamp] = {}
+        self._drawn: Any = None
+        self._lit: Any = None
+        self._size: tuple[int, ...] = ()
+        self._above: Any = None
+        self._beams: Any = None
+        self._sums: Any = None
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of GPU memory held, without the maps, which belong to the surroundings."""
+        if not self._size:
+            return 0
+        side, layers, channels = self._size
+        return side**2 * channels * (CausticBeam.itemsize + 4) + 4 * layers * DEPTH_SIZE**2
+
+    def update(self, bodies: Sequence[Any], lights: Sequence[Any], surroundings: Surroundings) -> None:
+        """Bring the maps to date with bodies (`passes.Body`), lamps, and the meshes of the surroundings."""
+        lamps = far_lamps(lights)
+        regions = [region_of(body, lamps, surroundings.mesh_bounds_ws) for body in bodies]
+        side = max((body.quality.caustic_size for body in bodies), default=1)
+        sky = [surroundings.sky_through(region.n) for region in regions]
+        anew = surroundings.submersion.set(regions, side, DEPTH_SIZE if bodies else 1, sky)
+        if not bodies:
+            self._drawn = self._lit = None
+            return
+        channels = max(channel_count(body) for body in bodies)
+        anew = self._allocate(side, max(len(lamps), 1) * len(bodies), channels) or anew
+        records = [
+            (body, self._lamp((k, j), caustic_params(body, region, lamp, surroundings.submersion.layer(k, j))))
+            for k, (body, region) in enumerate(zip(bodies, regions, strict=True))
+            for j, lamp in enumerate(lamps or [None])
+        ]
+        seen = [lamp.params.tobytes() for _, lamp in records], [region for region in regions]
+        drawn = (surroundings, surroundings.shadow_version, *seen)
+        lit = ([(b.version, b.time_s, id(b.item.waves), _choices(b.quality)) for b in bodies], seen[0])
+        encoder = self.device.wgpu.create_command_encoder()
+        if anew or drawn != self._drawn:
+            for body, lamp in records:
+                self._draw_depth(encoder, body, lamp, surroundings)
+            self.depth_runs += 1
+            self._drawn, self._lit = drawn, None
+        if lit != self._lit:
+            for body, lamp in records:
+                self._follow(encoder, body, lamp, surroundings, dark=not lamps)
+            self.photon_runs += 1
+            self._lit = lit
+        self.device.wgpu.queue.submit([encoder.finish()])
+
+    def _draw_depth(self, encoder: Any, body: Any, lamp: Lamp, surroundings: Surroundings) -> None:
+        key = "caustic_depth"
+        if key not in self._kernels:
+            self._kernels[key] = RenderPass(
+                self.device, SHADERS + key, fragment=None, targets=(), depth=DEPTH_FORMAT, depth_compare="less"
+            )
+        layer = int(lamp.params["layer"])
+        for above, texture in enumerate((surroundings.submersion.depth_map, self._above)):
+            self._kernels[key].run(
+                encoder,
+                depth=texture.create_view(dimension="2d", base_array_layer=layer, array_layer_count=1),
+                clear_depth=1.0,
+                bindings={**body.bindings, **surroundings.bindings, "caustic": lamp.depth_buffers[above]},
+                vertices=3 * surroundings.triangle_count,
+                label="water light depth",
+            )
+
+    def _follow(self, encoder: Any, body: Any, lamp: Lamp, surroundings: Surroundings, dark: bool) -> None:
+        around = surroundings.submersion
+        side = around.light_map.width
+        bound = {
+            **body.bindings,
+            **surroundings.bindings,
+            "caustic": lamp.buffer,
+            "caustic_beams": self._beams,
+            "caustic_sums": self._sums,
+            "caustic_below": around.depth_map.create_view(dimension="2d-array"),
+            "caustic_above": self._above.create_view(dimension="2d-array"),
+            "caustic_map_out": around.light_map.create_view(dimension="2d-array"),
+        }
+        groups = (-(-side // ROW), side, int(lamp.params["channels"]))
+        iteration = {"CAUSTIC_ITERATION": float(body.quality.caustic_intersection == "iteration")}
+        encoder.clear_buffer(self._sums)
+        if not dark:
+            self._kernel("caustic_refract", iteration).run(groups, bound, encoder)
+            self._kernel("caustic_splat").run(groups, bound, encoder)
+        self._kernel("caustic_resolve").run((*groups[:2], 1), bound, encoder)
+
+    def _kernel(self, name: str, constants: dict[str, float] | None = None) -> ComputeKernel:
+        key = (name, *(constants or {}).values())
+        if key not in self._kernels:
+            self._kernels[key] = ComputeKernel(self.device, SHADERS + name, constants=constants)
+        kernel: ComputeKernel = self._kernels[key]
+        return kernel
+
+    def _lamp(self, key: tuple[int, int], params: np.ndarray) -> Lamp:
+        if key not in self._lamps:
+            buffers = [self.device.buffer(CausticParams.itemsize, "uniform", "caustic") for _ in range(3)]
+            self._lamps[key] = Lamp(np.zeros((), CausticParams), buffers[0], buffers[1:])
+        lamp = self._lamps[key]
+        if lamp.params.tobytes() != params.tobytes():
+            lamp.params = params
+            self.device.write(lamp.buffer, params.reshape(1))
+            for above, buffer in enumerate(lamp.depth_buffers):
+                record = params.copy()
+                record["above"] = above
+                self.device.write(buffer, record.reshape(1))
+        return lamp
+
+    def _allocate(self, side: int, layers: int, channels: int) -> bool:
+        if self._size == (side, layers, channels):
+            return False
+        cells = side**2 * channels
+        self._beams = self.device.buffer(CausticBeam.itemsize * cells, label="caustic beams")
+        self._sums = self.device.buffer(np.zeros(cells, np.uint32), label="caustic sums")
+        self._above = self.device.texture(
+            size=(DEPTH_SIZE, DEPTH_SIZE), format=DEPTH_FORMAT, layers=layers, usage=("sample", "render"), label="above"
+        )
+        self._size = side, layers, channels
+        return True
+
+
+def far_lamps(lights: Sequence[Any]) -> list[DirectionalLight]:
+    """Those whose light comes from above and far away, as many as have maps; in the order of `Light.water_layer`."""
+    high = [lamp for lamp in lights if isinstance(lamp, DirectionalLight) and towards(lamp)[1] > 0.0]
+    return high[:MAX_WATER_LIGHTS]
+
+
+def towards(lamp: DirectionalLight) -> np.ndarray:
+    """(3,) unit, to the lamp."""
+    way = -np.asarray(lamp.direction, np.float64)
+    return np.asarray(way / np.linalg.norm(way))
+
+
+def channel_count(body: Any) -> int:
+    """How many colours of a body of water are refracted apart."""
+    n = body.params["n_water"]
+    return 1 if n[0] == n[1] == n[2] else 3
+
+
+def region_of(
+    body: Any, lamps: Sequence[DirectionalLight], mesh_bounds: Sequence[tuple[np.ndarray, np.ndarray]]
+) -> WaterRegion:
+    """What stands for a body of water where surfaces are lit.
+
+    Parameters
+    ----------
+    body : of `passes.Body`. lamps : of `far_lamps`. mesh_bounds : lower and upper corner of each mesh, metres.
+    """
+    p, quality = body.params, body.quality
+    n = tuple(float(v) for v in p["n_water"] / p["n_outside"])
+    top = float(p["level"] + p["wave_high"])
+    lowest = min((float(low[1]) for low, _ in mesh_bounds), default=top)
+    # A little deeper than the lowest mesh, whose depth would else be that of nothing.
+    reach = 1.01 * (top - lowest) if lowest < top else OPEN_M
+    thesis = quality.color == "mihalik"
+    absorption = np.full(3, p["clarity"]) if thesis else p["absorption"]
+    scattering = np.zeros(3) if thesis else p["scattering"]
+    return WaterRegion(
+        level_m=float(p["level"]),
+        low_m=_pair(p["low"]),
+        high_m=_pair(p["high"]),
+        limits_m=(float(p["wave_low"]), float(p["wave_high"])),
+        n=(n[0], n[1], n[2]),
+        absorption_per_m=_three(absorption),
+        scattering_per_m=_three(scattering),
+        asymmetry=float(p["asymmetry"]),
+        reach_m=max(reach, 1e-3),
+        slopes=tuple(camera_slope(lamp, n[1], quality) for lamp in lamps),
+        shadows=tuple(quality.shadows and lamp.cast_shadow for lamp in lamps),
+    )
+
+
+def camera_slope(lamp: DirectionalLight, n: float, quality: WaterQuality) -> tuple[float, float]:
+    """Horizontal way over depth, (x, z), of the camera of a map: along the refracted light, or the incident."""
+    return refracted_slope(_lifted(towards(lamp)), n if quality.caustic_camera == "refracted" else 1.0)
+
+
+def caustic_params(body: Any, region: WaterRegion, lamp: DirectionalLight | None, layer: int) -> np.ndarray:
+    """() record of `layouts.CausticParams`; without a lamp only heights are asked of it."""
+    p = np.zeros((), CausticParams)
+    to_light = _lifted(towards(lamp)) if lamp is not None else np.array([0.0, 1.0, 0.0])
+    p["to_light"], p["layer"], p["index"], p["reach_m"] = to_light, layer, region.n, region.reach_m
+    p["slope"] = camera_slope(lamp, region.n[1], body.quality) if lamp is not None else 0.0
+    p["slope_above"] = to_light[[0, 2]] / to_light[1]
+    p["focus"] = body.quality.caustics != "none"
+    p["loss"], p["channels"], p["steps"] = 1.0, channel_count(body), body.quality.steps
+    # Higher things still hide the lamp: depths there are cut off, not left out.
+    p["reach_above_m"] = 1e4
+    if lamp is not None:
+        p["sun_slope"] = np.tan(np.radians(lamp.angular_radius_deg)) / region.n[1]
+        p["shadows"] = body.quality.shadows and lamp.cast_shadow
+    return p
+
+
+def _lifted(to_light: np.ndarray) -> np.ndarray:
+    """A direction to a lamp that is at least a little over the horizon."""
+    return np.asarray([to_light[0], max(to_light[1], LOWEST_SUN), to_light[2]])
+
+
+def _choices(quality: WaterQuality) -> tuple[Any, ...]:
+    return quality.caustics, quality.caustic_intersection, quality.caustic_size
+
+
+def _pair(values: np.ndarray) -> tuple[float, float]:
+    return float(values[0]), float(values[1])
+
+
+def _three(values: np.ndarray) -> tuple[float, float, float]:
+    return float(values[0]), float(values[1]), float(values[2])
