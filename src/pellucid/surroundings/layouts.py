@@ -159,8 +159,14 @@ SubmersionParams = struct(
         ("sky", ("vec4f", MAX_WATERS)),  # irradiance of the sky just below a level surface, over its intensity
         ("sky_axis", ("vec4f", MAX_WATERS)),  # unit, where that comes from; space of the environment
         ("ground", ("vec4f", MAX_WATERS)),  # irradiance from below, likewise
+        ("air_sky", ("vec4f", MAX_WATERS)),  # the same three in air
+        ("air_axis", ("vec4f", MAX_WATERS)),
+        ("air_ground", ("vec4f", MAX_WATERS)),
         ("window", ("vec4f", MAX_WATERS)),  # share of matt light that the surface throws back; sine^2 of Snell's window
-        ("slope", ("vec4f", MAX_WATERS * MAX_WATER_LIGHTS)),  # of the camera of each map, horizontal way over depth; 1 for shadows
+        (
+            "slope",
+            ("vec4f", MAX_WATERS * MAX_WATER_LIGHTS),
+        ),  # of the camera of each map, horizontal way over depth; 1 for shadows
         (
             "down",
             ("vec4f", MAX_WATERS * DIFFUSE_ENTRIES),

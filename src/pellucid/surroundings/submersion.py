@@ -77,12 +77,14 @@ class SkyThroughSurface:
     ----------
     irradiance : (3,) of the sky on a level surface. axis : (3,) unit, where it comes from, in the environment's space.
     ground : (3,) irradiance from below. back : (3,) share of matt light that the surface throws back.
+    air : the same above the surface; None there.
     """
 
     irradiance: np.ndarray = field(default_factory=lambda: np.zeros(3))
     axis: np.ndarray = field(default_factory=lambda: np.array([0.0, 1.0, 0.0]))
     ground: np.ndarray = field(default_factory=lambda: np.zeros(3))
     back: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    air: SkyThroughSurface | None = None
 
 
 class Submersion:
@@ -147,7 +149,8 @@ class Submersion:
         anew = self._allocate(map_size, depth_size, layers) if regions else self._allocate(1, 1, 1)
         params = np.zeros((), SubmersionParams)
         params["bounds"][:, :2], params["bounds"][:, 2:] = 1e30, -1e30
-        params["index"], params["window"][:, 3], params["sky_axis"][:, 1] = 1.0, 1.0, 1.0
+        params["index"], params["window"][:, 3] = 1.0, 1.0
+        params["sky_axis"][:, 1] = params["air_axis"][:, 1] = 1.0
         for k, region in enumerate(regions):
             self._write(params, k, region, sky[k] if sky else SkyThroughSurface())
         if params.tobytes() != self._params.tobytes():
@@ -162,6 +165,8 @@ class Submersion:
         p["absorption"][k, :3] = region.absorption_per_m
         p["scattering"][k] = *region.scattering_per_m, region.asymmetry
         p["sky"][k, :3], p["sky_axis"][k, :3], p["ground"][k, :3] = sky.irradiance, sky.axis, sky.ground
+        air = sky.air or sky
+        p["air_sky"][k, :3], p["air_axis"][k, :3], p["air_ground"][k, :3] = air.irradiance, air.axis, air.ground
         p["window"][k] = *sky.back, min(1.0 / region.n[1] ** 2, 1.0)
         for light, slope in enumerate(region.slopes[:MAX_WATER_LIGHTS]):
             p["slope"][k * MAX_WATER_LIGHTS + light, :2] = slope
@@ -210,7 +215,7 @@ def sky_through(pixels: np.ndarray, sh: np.ndarray, n: Triple) -> SkyThroughSurf
     pixels : (H, W, 3) radiance, row 0 towards +Y. sh : (9, 3) coefficients of its irradiance.
     n : index by channel, over that of what is above.
     """
-    out = SkyThroughSurface()
+    out = SkyThroughSurface(air=None if n == (1.0, 1.0, 1.0) else sky_through(pixels, sh, (1.0, 1.0, 1.0)))
     rows = pixels.shape[0]
     theta = np.pi * (np.arange(rows) + 0.5) / rows
     phi = 2.0 * np.pi * (np.arange(pixels.shape[1]) + 0.5) / pixels.shape[1] - np.pi

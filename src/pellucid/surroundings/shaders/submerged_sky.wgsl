@@ -49,18 +49,23 @@ fn submerged_rows(water: u32, depth_m: f32) -> DiffuseRows {
 //     E = (E_window(n) down + (1 - w) E_ground down) / (1 - A q back / back_0),
 // w = (1 + n.y)/2 the share of the upper half of all directions, q = w - (1 - back_0) g(n.y) that of those in which the
 // surface mirrors the water. Level and clear it is E_window / (1 - A back_0) [saunderson1942]; in a uniform environment
-// a white surface receives pi n^2 L whichever way it faces.
+// a white surface receives pi n^2 L whichever way it faces. In an uneven one, E_window and E_ground know no more of the
+// sky than an axis: what that misses in air, where environment_irradiance knows more, is taken to be missed in water.
 fn submerged_irradiance(n_ws: vec3f, albedo: vec3f, at: Submerged) -> vec3f {
     let window = submersion.window[at.water];
     let down = submerged_down(at.water, at.depth_m);
     let back = submerged_back(at.water, at.depth_m);
     let upper = 0.5 + 0.5 * n_ws.y;
-    let axis = submersion.sky_axis[at.water].xyz;
-    let seen = cap_irradiance(dot(environment_space(n_ws), axis), window.a);
+    let n = environment_space(n_ws);
+    let seen = cap_irradiance(dot(n, submersion.sky_axis[at.water].xyz), window.a);
+    let seen_in_air = 0.5 + 0.5 * dot(n, submersion.air_axis[at.water].xyz);
+    let in_air = submersion.air_sky[at.water].rgb * seen_in_air + submersion.air_ground[at.water].rgb * (1.0 - upper);
+    let known = max(frame.environment_intensity * in_air, vec3f(1e-9));
+    let missed = clamp(environment_irradiance(n_ws) / known, vec3f(0.0), vec3f(2.0));
     let sky = submersion.sky[at.water].rgb * seen * down + submersion.ground[at.water].rgb * (1.0 - upper) * down;
     let mirrored = max(upper - (1.0 - window.rgb) * cap_irradiance(n_ws.y, window.a), vec3f(0.0));
     let again = 1.0 - albedo * mirrored * back / max(window.rgb, vec3f(1e-6));
-    return frame.environment_intensity * sky / max(again, vec3f(1e-3));
+    return missed * frame.environment_intensity * sky / max(again, vec3f(1e-3));
 }
 
 // Irradiance of an even round patch of sky on a surface tilted against its middle, over that on one that faces it:

@@ -3,7 +3,7 @@
 For each body of water and each such lamp one map lies on the level, under a camera parallel to the light
 [mihalik2008, 8]. First the meshes are drawn from there, below the surface and above it. Then a photon for each cell of
 the surface is refracted and followed to the first mesh, and what it carries is summed where the camera sees it land.
-All is kept until the lamp, the meshes, the water or its waves change; where waves alone move, meshes are not drawn again.
+All is kept until the lamp, the meshes, the water or its waves change; meshes are not drawn again for waves alone.
 """
 
 from __future__ import annotations

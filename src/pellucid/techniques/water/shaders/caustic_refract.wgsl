@@ -21,6 +21,7 @@ fn caustic_beam(cell: vec2u, channel: u32) -> CausticBeam {
     let xz = caustic_place(vec2f(cell) + 0.5);
     var at = wave_point(xz, 0.0);
     at.slope *= caustic.focus;
+    at.height *= caustic.focus;
     let n_ws = normalize(vec3f(-at.slope.x, 1.0, -at.slope.y));
     let origin = vec3f(xz.x, water.level + at.height, xz.y);
     let facing = dot(n_ws, caustic.to_light);
