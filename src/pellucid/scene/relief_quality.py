@@ -14,6 +14,7 @@ REFLECTIONS = ("environment", "plane", "search")
 SHADOWS = ("none", "hard", "soft", "horizon")
 OCCLUSIONS = ("none", "fragment", "texture")
 ENVIRONMENTS = ("rays", "map", "cube_once", "cube_every_frame")
+SHOWS = ("radiance", "shares", "ways", "mirrored", "refracted", "lamps")
 STEPS = ("color", "normal", "offset", "relief", "two_layer", "occlusion", "occlusion_hue", "best")
 TECHNIQUES = (*STEPS, *(f"{step}_thesis" for step in STEPS))
 
@@ -50,6 +51,10 @@ class ReliefQuality(Value):
     silhouettes : rays may leave the relief over the horizon; else they go on until they meet something.
     environment : rays that leave meet the meshes of the scene (``"rays"``), or see the environment alone (``"map"``),
         or the scene in a cube drawn from the middle of the object, once or for every picture.
+    show : what the picture holds of the translucent layer: its ``"radiance"``; in false colours its ``"shares"``, red
+        what it reflects and blue what it lets through, or the ``"ways"`` of mirrored rays, red where they end on the
+        relief and blue where they leave it; or, all else left out, what is ``"mirrored"``, or ``"refracted"``, as if
+        all light were, or the ``"lamps"`` that it mirrors.
 
     Raises
     ------
@@ -74,6 +79,7 @@ class ReliefQuality(Value):
     caustics: bool = False
     silhouettes: bool = True
     environment: str = "rays"
+    show: str = "radiance"
 
     def __post_init__(self) -> None:
         for name, options in _CHOICES.items():
@@ -106,6 +112,7 @@ _CHOICES = {
     "shadows": SHADOWS,
     "occlusion": OCCLUSIONS,
     "environment": ENVIRONMENTS,
+    "show": SHOWS,
 }
 _THESIS = {
     "search": "linear",

@@ -15,7 +15,7 @@ from pellucid.errors import AssetError, SceneError
 from pellucid.scene import checks
 from pellucid.scene.mesh import Mesh
 from pellucid.scene.placement import SceneObject, Value, check_placement, store
-from pellucid.scene.relief_quality import TECHNIQUES, ReliefQuality
+from pellucid.scene.relief_quality import STEPS, TECHNIQUES, ReliefQuality
 
 if TYPE_CHECKING:
     from pellucid.media import Medium
@@ -219,6 +219,9 @@ class ReliefSurface(SceneObject):
         )
         if self.tile_m is not None and self.tiles != (1.0, 1.0):
             raise SceneError("relief_surface.tiles", "are given together with tile_m", "choose one of them")
+        if self.quality.show != "radiance" and not self.draws_translucent:
+            said = f"is {self.quality.show!r}, but no translucent layer is drawn"
+            raise SceneError("relief_surface.quality.show", said, "give one, and a technique that draws it")
 
     @classmethod
     def plane(
@@ -270,6 +273,12 @@ class ReliefSurface(SceneObject):
         if mesh.uvs is None:
             raise AssetError(path, "has no texture coordinates", "unwrap the mesh before it is exported")
         return cls(mesh, solid, translucent, **look)
+
+    @property
+    def draws_translucent(self) -> bool:
+        """Whether there is a translucent layer, and the technique draws it."""
+        step = self.technique.removesuffix("_thesis")
+        return self.translucent is not None and STEPS.index(step) >= STEPS.index("two_layer")
 
     @property
     def matter(self) -> Medium:

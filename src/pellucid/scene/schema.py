@@ -261,6 +261,7 @@ class ReliefQualityFile(Model):
     caustics: StrictBool = UNSET
     silhouettes: StrictBool = UNSET
     environment: StrictStr = UNSET
+    show: StrictStr = UNSET
 
 
 class ReliefLayerFile(Model):

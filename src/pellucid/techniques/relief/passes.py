@@ -12,7 +12,7 @@ from pellucid.gpu import Device, RenderPass
 from pellucid.gpu.modules import declared
 from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT, Targets
 from pellucid.scene.placement import placement_matrix
-from pellucid.scene.relief_quality import REFLECTIONS, REFRACTIONS, SEARCHES, STEPS, ReliefQuality, quality_of
+from pellucid.scene.relief_quality import REFLECTIONS, REFRACTIONS, SEARCHES, SHOWS, ReliefQuality, quality_of
 from pellucid.surroundings.diffuse import diffuse_tables
 from pellucid.techniques.relief.cube import SceneCube
 from pellucid.techniques.relief.frames import Hull, vertex_texels
@@ -74,7 +74,7 @@ class Body:
     @property
     def two_layers(self) -> bool:
         """Whether the translucent layer is drawn."""
-        return draws_two_layers(self.item)
+        return self.item.draws_translucent
 
     @property
     def constants(self) -> dict[str, float]:
@@ -87,16 +87,11 @@ class Body:
             "RELIEF_SEARCH": float(SEARCHES.index(quality.search)),
             "RELIEF_REFRACTION": float(REFRACTIONS.index(quality.refraction)),
             "RELIEF_PIECES": float(quality.refraction_pieces),
+            "RELIEF_SHOWS": float(SHOWS.index(quality.show)),
             "RELIEF_CUBE": float(quality.environment.startswith("cube")),
             "RELIEF_REFLECTION": float(REFLECTIONS.index(quality.reflection)),
             **self.light_constants,
         }
-
-
-def draws_two_layers(item: ReliefSurface) -> bool:
-    """Whether there is a translucent layer, and the technique draws it."""
-    step = item.technique.removesuffix("_thesis")
-    return item.translucent is not None and STEPS.index(step) >= STEPS.index("two_layer")
 
 
 class ReliefTechnique:
@@ -256,7 +251,7 @@ class ReliefTechnique:
         if _moves(item) and quality.search in ("cone", "distance"):
             # Bounds are new in a moment; maps of free space are not, and find nothing that bounds do not.
             quality = quality.replace(search="max_mip")
-        two_layers = draws_two_layers(item)
+        two_layers = item.draws_translucent
         on_device = _moves(item) and device_moves(self.device, item, quality)
         maps_key = [*_maps_key(item, shape.tile_m), quality.search, quality.complexity, two_layers, on_device]
         alike = next((b for b in before if _same(b.maps_key, maps_key)), None)

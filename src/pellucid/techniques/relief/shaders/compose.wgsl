@@ -1,9 +1,8 @@
 // Second pass: the radiance of what each pixel sees of the relief.
 //!import surroundings/shaders/full_picture
 //!import techniques/relief/shaders/enter
-//!import techniques/relief/shaders/glints
-//!import techniques/relief/shaders/layer
 //!import techniques/relief/shaders/outside
+//!import techniques/relief/shaders/show
 
 @fragment
 fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
@@ -42,7 +41,7 @@ fn seen_radiance(pixel: vec2f, record: vec4u) -> vec3f {
     let slopes = relief_translucent_slopes(uv, relief_surface_level(footprint));
     let n_layer = select(relief_normal(frame_at, uv, slopes), frame_at.wall_ws, on_wall);
     let n_ws = relief_towards(n_layer, direction_ws);
-    let reflected = relief_layer_reflectance(-dot(n_ws, direction_ws));
+    let reflected = relief_shown_reflectance(relief_layer_reflectance(-dot(n_ws, direction_ws)));
     let at = LayerPoint(uv, h, p_ws, n_ws, direction_ws, footprint, reflected);
     return both_layers(frame_at, at, layer == RELIEF_SOLID, on_wall);
 }
@@ -50,6 +49,9 @@ fn seen_radiance(pixel: vec2f, record: vec4u) -> vec3f {
 // Refracted looks, one or three, then the mirrored one; or the solid layer itself. All are shaded in one place, since
 // every place that shades would be executed by all pixels.
 fn both_layers(frame_at: ReliefFrame, at: LayerPoint, is_solid: bool, on_wall: bool) -> vec3f {
+    if relief_shows_at_once() && !is_solid {
+        return relief_shown_at_once(frame_at, at);
+    }
     var outside: OutsideLooks;
     var radiance = vec3f(0.0);
     let rays = select(1u, 3u, relief.dispersion != 0u);
@@ -73,9 +75,11 @@ fn both_layers(frame_at: ReliefFrame, at: LayerPoint, is_solid: bool, on_wall: b
         }
     }
     if is_solid {
-        return radiance;
+        return relief_shown_solid(radiance);
     }
-    radiance += relief_glints(at.p_ws, at.n_ws, -at.direction_ws);
+    if RELIEF_SHOWS == RELIEF_SHOWS_RADIANCE {
+        radiance += relief_glints(at.p_ws, at.n_ws, -at.direction_ws);
+    }
     radiance += outside.mirrored.weight * outside_radiance(outside.mirrored);
     if any(outside.passed.weight > vec3f(0.0)) {
         radiance += outside.passed.weight * outside_radiance(outside.passed);
