@@ -101,3 +101,14 @@ def test_rings_spread_on_water(tmp_path: Path) -> None:
     assert len(list(tmp_path.glob("rings_*.png"))) == len(frames) == 6
     assert all(np.isfinite(f.radiance).all() for f in frames)
     assert all(not np.array_equal(a.radiance, b.radiance) for a, b in pairwise(frames))
+
+
+def test_rain_goes_on_where_it_stopped(tmp_path: Path) -> None:
+    paths = run(10, tmp_path, samples=1, frames=3, film=False)
+    assert [p.name for p in paths] == ["frame_0000.png", "frame_0001.png", "frame_0002.png"]
+    drawn = [p.read_bytes() for p in paths]
+    assert len(set(drawn)) == 3
+    paths[1].unlink()
+    before = [paths[k].stat().st_mtime_ns for k in (0, 2)]
+    assert [p.read_bytes() for p in run(10, tmp_path, samples=1, frames=3, film=False)] == drawn
+    assert [paths[k].stat().st_mtime_ns for k in (0, 2)] == before

@@ -1,6 +1,6 @@
 """Pictures that show what the renderer does; `pellucid demo` and `pellucid gallery` render them."""
 
-from . import amber, company, crystals, glow, light, relief, relief_layers, solids, table
+from . import amber, company, crystals, glow, light, relief, relief_layers, relief_rain, relief_views, solids, table
 from .picture import Picture
 
 #: All pictures, in the order in which they are shown.
@@ -14,6 +14,8 @@ PICTURES: tuple[Picture, ...] = (
     *company.PICTURES,
     *relief.PICTURES,
     *relief_layers.PICTURES,
+    *relief_rain.PICTURES,
+    *relief_views.PICTURES,
 )
 
 __all__ = ["PICTURES", "Picture"]
