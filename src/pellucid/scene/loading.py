@@ -26,6 +26,8 @@ from pellucid.scene.refractive_volume import RefractiveVolume
 from pellucid.scene.relief_quality import ReliefQuality
 from pellucid.scene.relief_surface import MAPS, ReliefLayer, ReliefSurface
 from pellucid.scene.scene import Scene
+from pellucid.scene.water import Water
+from pellucid.scene.water_quality import WaterQuality
 
 CRYSTAL = ("optic_axis", "delta_n_e")
 LIGHTS: dict[str, type[Light]] = {"directional": DirectionalLight, "point": PointLight, "area": AreaLight}
@@ -88,6 +90,8 @@ def _object(part: Any, folder: Path) -> SceneObject:
         return _relief(part, folder)
     if isinstance(part, schema.SheetFile):
         return _sheet(part, folder)
+    if isinstance(part, schema.WaterFile):
+        return _water(part, folder)
     return _mesh(part, folder) if isinstance(part, schema.MeshBase) else _volume(part, folder)
 
 
@@ -227,6 +231,33 @@ def _relief(part: schema.ReliefFile, folder: Path) -> ReliefSurface:
     for name in {"solid", "translucent"} & part.model_fields_set:
         given[name] = _relief_layer(getattr(part, name), folder, f"relief_surface.{name}")
     return ReliefSurface(_mesh(part.mesh, folder), **given)
+
+
+def _water(part: schema.WaterFile, folder: Path) -> Water:
+    given = part.given("type", "waves", "medium", "quality")
+    if "quality" in part.model_fields_set:
+        try:
+            given["quality"] = WaterQuality(**part.quality.given())
+        except SceneError as error:
+            where = error.field.replace("water_quality", "water.quality")
+            raise SceneError(where, error.reason, error.remedy) from error
+    if "medium" in part.model_fields_set:
+        given["medium"] = substance(part.medium)
+    if "waves" in part.model_fields_set:
+        given["waves"] = _waves(part.waves, folder)
+    return Water(**given)
+
+
+def _waves(part: dict[str, Any], folder: Path) -> Any:
+    from pellucid.fields.waves import from_plain
+    from pellucid.io.volumes import read_arrays
+
+    arrays = part.get("arrays")
+    try:
+        return from_plain(part, read_arrays(folder / arrays) if isinstance(arrays, str) else {})
+    except SceneError as error:
+        where = error.field if error.field.startswith("waves") else f"waves.{error.field}"
+        raise SceneError(f"water.{where}", error.reason, error.remedy) from error
 
 
 def _relief_layer(part: schema.ReliefLayerFile, folder: Path, where: str) -> ReliefLayer:

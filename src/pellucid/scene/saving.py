@@ -22,6 +22,7 @@ from pellucid.scene.refractive_sheet import PICTURES, RefractiveSheet
 from pellucid.scene.refractive_volume import RefractiveVolume
 from pellucid.scene.relief_surface import MAPS, ReliefLayer, ReliefSurface
 from pellucid.scene.scene import Scene
+from pellucid.scene.water import Water
 
 CRYSTAL = ("optic_axis", "delta_n_e")
 LIGHT_TYPES: dict[type, str] = {DirectionalLight: "directional", PointLight: "point", AreaLight: "area"}
@@ -37,6 +38,10 @@ LOOKS: dict[type, tuple[str, ...]] = {
     ReliefSurface: (
         *("position", "rotation", "scale", "ambient_n", "tile_m", "tiles", "tiling", "technique", "quality"),
         *("dispersion", "absorption", "scattering", "specular_factor", "edges"),
+    ),
+    Water: (
+        *("level", "extent_m", "center", "ambient_n", "technique", "quality", "foam", "color", "clarity_per_m"),
+        "dispersion",
     ),
     RefractiveSheet: (
         *("position", "rotation", "scale", "depth_m", "size_m", "segments", "motion_fps", "ambient_n", "refraction"),
@@ -178,10 +183,25 @@ def _object(thing: Any, label: str, index: int, beside: Sidecars) -> dict[str, A
         medium = {"medium": describe_medium(thing.medium, f"objects[{index}].medium")}
         mesh = _geometry(thing.mesh, f"{label}.mesh", beside) | _stated(thing.mesh, ("shading",))
         return {"type": "relief_surface", "mesh": mesh, **layers, **medium, **_stated(thing, LOOKS[ReliefSurface])}
+    if isinstance(thing, Water):
+        where = f"objects[{index}]"
+        medium = {"medium": describe_medium(thing.medium, f"{where}.medium")}
+        waves = {} if thing.waves is None else {"waves": _waves(thing.waves, label, where, beside)}
+        return {"type": "water", **medium, **_stated(thing, LOOKS[Water]), **waves}
     if isinstance(thing, RefractiveSheet):
         medium = {"medium": describe_medium(thing.medium, f"objects[{index}].medium")}
         return {"type": "refractive_sheet", **_sheet(thing, label, f"objects[{index}]", beside), **medium}
     raise SceneError(f"objects[{index}]", f"a {type(thing).__name__} cannot be written to a scene file")
+
+
+def _waves(waves: Any, label: str, where: str, beside: Sidecars) -> dict[str, Any]:
+    from pellucid.fields.waves import to_plain
+
+    try:
+        plain, arrays = to_plain(waves)
+    except SceneError as error:
+        raise SceneError(f"{where}.{error.field}", error.reason, error.remedy) from error
+    return plain | ({"arrays": beside.arrays(f"{label}.waves", arrays)} if arrays else {})
 
 
 def _sheet(sheet: RefractiveSheet, label: str, where: str, beside: Sidecars) -> dict[str, Any]:

@@ -287,6 +287,8 @@ def _object_tag(data: Any) -> str | None:
     if not isinstance(data, dict):
         return None
     kind = data.get("type")
+    if kind == "water":
+        return "water"
     if kind == "mesh" and "kind" in data:
         return f"mesh.{data['kind']}"
     sources = {
@@ -335,6 +337,48 @@ class ReliefFile(Placed):
     scattering: Number = UNSET
     specular_factor: Number = UNSET
     edges: StrictStr = UNSET
+
+
+class WaterQualityFile(Model):
+    refraction: StrictStr = UNSET
+    reflection: StrictStr = UNSET
+    steps: StrictInt = UNSET
+    march_steps: StrictInt = UNSET
+    texture_size: StrictInt = UNSET
+    cameras: StrictStr = UNSET
+    field_of_view: Number = UNSET
+    cull_back_faces: StrictBool = UNSET
+    point_distance_m: Number = UNSET
+    underside_distance_m: Number = UNSET
+    fallback: StrictStr = UNSET
+    fresnel: StrictStr = UNSET
+    schlick_power: Number = UNSET
+    color: StrictStr = UNSET
+    underside: StrictStr = UNSET
+    caustics: StrictStr = UNSET
+    caustic_size: StrictInt = UNSET
+    caustic_camera: StrictStr = UNSET
+    caustic_intersection: StrictStr = UNSET
+    shadows: StrictBool = UNSET
+    god_rays: StrictBool = UNSET
+
+
+class WaterFile(Model):
+    """Water; its waves are what ``fields.waves.from_plain`` understands."""
+
+    type: Literal["water"]
+    level: Number = UNSET
+    extent_m: Number | tuple[Number, Number] = UNSET
+    center: tuple[Number, Number] = UNSET
+    waves: dict[StrictStr, Any] = UNSET
+    medium: Substance = UNSET
+    ambient_n: Number = UNSET
+    technique: StrictStr = UNSET
+    quality: WaterQualityFile = UNSET
+    foam: Number = UNSET
+    color: Triple = UNSET
+    clarity_per_m: Number = UNSET
+    dispersion: StrictBool = UNSET
 
 
 class SheetFile(Placed):
@@ -395,12 +439,13 @@ ObjectFile = Annotated[
     | Annotated[VolumeOfArray, Tag("refractive_volume.array")]
     | Annotated[StoredVolume, Tag("refractive_volume.volume")]
     | Annotated[ReliefFile, Tag("relief_surface.solid")]
-    | Annotated[SheetFile, Tag("refractive_sheet.picture")],
+    | Annotated[SheetFile, Tag("refractive_sheet.picture")]
+    | Annotated[WaterFile, Tag("water")],
     _choose(
         _object_tag,
         'needs "type" = "mesh" with "file" or "kind" (plane, box, sphere, torus, checkerboard), '
         '"type" = "refractive_volume" with "mesh" or "array", "type" = "relief_surface" with "solid", '
-        'or "type" = "refractive_sheet" with "picture"',
+        '"type" = "refractive_sheet" with "picture", or "type" = "water"',
     ),
 ]
 
