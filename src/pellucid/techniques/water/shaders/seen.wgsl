@@ -72,7 +72,8 @@ fn seen_in_picture(place: PicturePlace, p_ws: vec3f, direction_ws: vec3f, below:
     let inside = water_way(p_ws, direction_ws);
     let way = select(place.t, WATER_FAR, open);
     let denser = water.n_water / water.n_outside;
-    let leaves = below && way > inside;
+    let end = p_ws + way * direction_ws;
+    let leaves = below && !(!open && water_reaches(end) && end.y < water.level + water.wave_high);
     let radiance = select(shown, environment_radiance(direction_ws), open) * select(vec3f(1.0), denser * denser, leaves);
     return Seen(radiance, select(way, min(way, inside), below), !open);
 }
