@@ -32,6 +32,7 @@ HALF_M = 10.0  # of the water
 RAYS = 600
 STEPS = (1, 2, 3, 4, 5, 6, 7, 8, 16)
 FAILS = 0.05
+SKY_M = 100.0
 SLOPE = 0.1
 
 
@@ -78,7 +79,10 @@ def rays() -> tuple[np.ndarray, np.ndarray]:
 
 def rows(device: Device) -> list[str]:
     """The table as lines of Markdown."""
-    lines = ["| bottom | look-up | error, median | 95 % | fails | of these not shown |", "|---|---|---|---|---|---|"]
+    head = (
+        "| bottom | look-up, steps | error, median | 95 % | fails | known to fail | show another place, sky, border |"
+    )
+    lines = [head, "|---|---|---|---|---|---|---|"]
     points, ways = rays()
     water = pl.Water(extent_m=2 * HALF_M, medium=1.333)
     for name, meshes in bottoms().items():
@@ -102,17 +106,20 @@ def rows(device: Device) -> list[str]:
             for search, places in tried.items():
                 error = np.linalg.norm(places.shown_ws - true, axis=1)[met]
                 fails = error > FAILS * way[met]
-                hidden = (places.found == UNKNOWN)[met]
-                share = f"{100 * np.mean(hidden[fails]):.0f} %" if fails.any() else "-"
-                low, high = np.minimum(np.percentile(error, [50, 95]), 99.0)
-                lines.append(
-                    f"| {name} | {search} | {_metres(low)} | {_metres(high)} | {100 * fails.mean():.1f} % | {share} |"
-                )
+                low, high = np.percentile(error, [50, 95])
+                known = (places.found == UNKNOWN)[met] & fails
+                border = ((places.uv < 0.0) | (places.uv > 1.0)).any(axis=1)[met] & fails
+                sky = (np.linalg.norm(places.shown_ws - points, axis=1) > SKY_M)[met] & fails & ~border
+                shares = [f"{100 * part.mean():.1f} %" for part in (fails, known, fails & ~sky & ~border, sky, border)]
+                numbers = f"{_metres(low)} | {_metres(high)} | {shares[0]} | {shares[1]}"
+                lines.append(f"| {name} | {search} | {numbers} | {', '.join(shares[2:])} |")
     return lines
 
 
 def _metres(value: float) -> str:
-    return f"{1000 * value:.1f} mm" if value < 0.1 else f"{value:.2f} m"
+    if value > SKY_M:
+        return "sky"
+    return f"{1000 * value:.2g} mm" if value < 0.1 else f"{value:.2f} m"
 
 
 def main() -> int:

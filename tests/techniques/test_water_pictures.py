@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -41,7 +42,9 @@ class Looked:
 
     def __init__(self, device: Device, *objects: pl.Mesh, quality: WaterQuality = SOURCE) -> None:
         self.surroundings = Surroundings(device)
-        self.surroundings.prepare(pl.Scene(camera=CAMERA, environment=pl.Environment.constant(0.5), objects=[*objects]), SIZE)
+        self.surroundings.prepare(
+            pl.Scene(camera=CAMERA, environment=pl.Environment.constant(0.5), objects=[*objects]), SIZE
+        )
         self.pictures = SurfacePictures(device)
         encoder = device.wgpu.create_command_encoder()
         self.pictures.draw(encoder, WATER, quality, ((0.0, 0.0), 0.1), self.surroundings)
@@ -106,7 +109,7 @@ def test_more_steps_are_never_worse() -> None:
 
     ways = np.broadcast_to(r, u.shape)
     gaps = [iterate(u, ways, ends, lambda w: np.linalg.norm(w - eye, axis=1), n).gap for n in range(1, 13)]
-    assert all((later <= earlier).all() for earlier, later in zip(gaps, gaps[1:], strict=False))
+    assert all((later <= earlier).all() for earlier, later in pairwise(gaps))
     assert np.median(gaps[-1]) < 0.2 * np.median(gaps[0])
 
 
@@ -174,7 +177,10 @@ def test_a_march_passes_behind_what_stands_before(device: Device) -> None:
 def test_places_and_points_are_inverse_to_each_other() -> None:
     for camera in (CAMERA, CAMERA.replace(orthographic_height_m=5.0)):
         view = view_of(camera, SIZE)
-        uv, depth = np.array([[0.2, 0.7], [0.9, 0.1]]), np.array([0.3, 0.9]) if view.is_orthographic else np.array([0.002, 0.001])
+        uv, depth = (
+            np.array([[0.2, 0.7], [0.9, 0.1]]),
+            np.array([0.3, 0.9]) if view.is_orthographic else np.array([0.002, 0.001]),
+        )
         clip = np.c_[unprojected(view, uv, depth), np.ones(2)] @ (view.projection @ view.view_from_world).T
         assert np.allclose(0.5 + clip[:, :2] / clip[:, 3:] * (0.5, -0.5), uv)
         assert np.allclose(clip[:, 2] / clip[:, 3], depth)

@@ -1,4 +1,4 @@
-"""What look-ups in pictures are held to, in float64: exact intersections, and the iteration of the thesis as it reads."""
+"""What look-ups in pictures are held to, in float64: exact intersections, and the iteration as the thesis has it."""
 
 from __future__ import annotations
 
