@@ -29,6 +29,7 @@ WaterParams = struct(
         ("march_steps", "u32"),
         ("point_distance_m", "f32"),
         ("underside_distance_m", "f32"),
+        ("short_slopes", "vec3f"),  # mean squares of slopes of waves too short for the maps: xx, zz, xz
         ("wave_layers", "u32"),
         ("time_s", "f32"),
         ("wave_tiles", ("vec4f", WAVE_LAYERS)),  # by layer: width and depth in metres, 1 where it repeats, 0

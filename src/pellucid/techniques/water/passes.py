@@ -25,6 +25,7 @@ from pellucid.techniques.water.caustics import WaterLight
 from pellucid.techniques.water.layouts import WaterParams, WaterViews
 from pellucid.techniques.water.prepare import WaveMaps, parameters, same_surfaces, surfaces_of, wave_maps
 from pellucid.techniques.water.views import SurfacePictures, needs_pictures
+from pellucid.techniques.water.wave_moments import moment_levels
 
 if TYPE_CHECKING:
     from pellucid.scene import Camera
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
     from pellucid.surroundings import Surroundings
 
 HIT_FORMAT = "rgba32float"
-WAVE_NAMES = ("wave_map", "wave_sampler", "wave_moments", "wave_texture")
+WAVE_NAMES = ("wave_map", "wave_sampler", "wave_moments", "wave_texture", "moments_texture")
 NEAREST = ("water_hits", "opaque_color", "picture_depths")
 
 
@@ -178,7 +179,7 @@ class WaterTechnique:
         return body
 
     def _upload(self, body: Body) -> None:
-        texels = body.waves.texels
+        texels, moments = body.waves.texels, moment_levels(body.waves.texels)
         texture = body.bindings.get("wave_texture")
         layers, rows, columns = texels.shape[:3]
         if texture is None or tuple(texture.size) != (columns, rows, layers):
@@ -186,8 +187,17 @@ class WaterTechnique:
             texture = self.device.texture(size=(columns, rows), format=kind, layers=layers, label="waves")
             body.bindings["wave_texture"] = texture
             body.bindings["wave_map"] = texture.create_view(dimension="2d-array")
-            body.bindings["wave_moments"] = self._nothing["wave_moments"]
+            self._create_moments(body, kind, moments)
         self.device.write_texture(texture, texels)
+        for mip, level in enumerate(moments):
+            self.device.write_texture(body.bindings["moments_texture"], level, mip=mip)
+
+    def _create_moments(self, body: Body, kind: str, moments: list[np.ndarray]) -> None:
+        layers, rows, columns = moments[0].shape[:3]
+        given: dict[str, Any] = {"format": kind, "layers": layers, "mips": len(moments), "label": "wave moments"}
+        texture = self.device.texture(size=(columns, rows), **given)
+        body.bindings["moments_texture"] = texture
+        body.bindings["wave_moments"] = texture.create_view(dimension="2d-array")
 
     def _write(self, body: Body) -> None:
         body.params = parameters(body.item, body.quality, body.waves, body.time_s)

@@ -9,6 +9,7 @@ import numpy as np
 
 from pellucid.errors import SceneError
 from pellucid.techniques.water.layouts import WAVE_LAYERS, WaterParams
+from pellucid.techniques.water.wave_moments import short_slopes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -140,6 +141,7 @@ def parameters(item: Water, quality: WaterQuality, waves: WaveMaps, time_s: floa
     p["schlick_power"] = quality.schlick_power
     p["steps"], p["march_steps"] = quality.steps, quality.march_steps
     p["point_distance_m"], p["underside_distance_m"] = quality.point_distance_m, quality.underside_distance_m
+    p["short_slopes"] = short_slopes(sources_of(item.waves))
     p["wave_layers"], p["time_s"] = len(waves.tiles), time_s
     p["wave_tiles"][: len(waves.tiles)] = waves.tiles
     return p
