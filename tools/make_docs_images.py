@@ -4,7 +4,8 @@ Run ``pellucid demo --output out/demo`` and then ``python tools/make_docs_images
 docs/images/gallery/NAME.jpg (400 x 300) and docs/images/demo.jpg, the sheet of them all for the README; with
 ``--comparison out/povray`` also the pictures of ``tools/compare_povray.py`` that docs/truth.md shows, and with
 ``--light out/light`` those of ``tools/light_pictures.py`` that docs/light.md shows, with ``--relief out/relief`` those
-of ``tools/relief_pictures.py``, with ``--mitsuba out/mitsuba_relief`` those of ``tools/compare_mitsuba_relief.py``.
+of ``tools/relief_pictures.py``, with ``--sheet out/sheet`` those of ``tools/sheet_pictures.py``, with ``--mitsuba
+out/mitsuba_relief`` those of ``tools/compare_mitsuba_relief.py``.
 Without a folder, only the latter.
 """
 
@@ -21,6 +22,7 @@ THUMBNAIL = (400, 300)
 SHEET_WIDTH = 960
 LIGHT = {"fluence": (288, 384), "intensity": (288, 384), "caustic": (512, 384)}
 RELIEF = {"example": (640, 480), "steps": (1280, 480)}
+SHEET = {"example": (480, 360), "errors": (880, 300)}
 LAYERS = ("mitsuba", "pellucid", "pellucid_caustics", "pellucid_difference_x4", "pellucid_caustics_difference_x4")
 COMPARED = ("povray", "sharp", "smooth", "sharp_difference_x4", "smooth_difference_x4")
 
@@ -55,6 +57,7 @@ def main() -> None:
     parser.add_argument("--comparison", type=Path, help="folder that tools/compare_povray.py wrote")
     parser.add_argument("--light", type=Path, help="folder that tools/light_pictures.py wrote")
     parser.add_argument("--relief", type=Path, help="folder that tools/relief_pictures.py wrote")
+    parser.add_argument("--sheet", type=Path, help="folder that tools/sheet_pictures.py wrote")
     parser.add_argument("--mitsuba", type=Path, help="folder that tools/compare_mitsuba_relief.py wrote")
     options = parser.parse_args()
     if options.demo:
@@ -65,6 +68,8 @@ def main() -> None:
         write_jpeg(options.light / f"{name}.png", DOCS / "light" / f"{name}.jpg", size, 85)
     for name, size in RELIEF.items() if options.relief else ():
         write_jpeg(options.relief / f"{name}.png", DOCS / "relief" / f"{name}.jpg", size, 85)
+    for name, size in SHEET.items() if options.sheet else ():
+        write_jpeg(options.sheet / f"{name}.png", DOCS / "sheet" / f"{name}.jpg", size, 82)
     for name in LAYERS if options.mitsuba else ():
         write_jpeg(options.mitsuba / f"{name}.png", DOCS / "relief" / f"{name}.jpg", (320, 240), 85)
 

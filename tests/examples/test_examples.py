@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from pellucid.io.images import read_image
+
 EXAMPLES = sorted((Path(__file__).resolve().parents[2] / "examples").glob("[0-9]*.py"))
 SMALL: dict[str, Any] = {"size": (64, 48), "resolution": 32, "samples": 2}
 
@@ -112,3 +114,11 @@ def test_rain_goes_on_where_it_stopped(tmp_path: Path) -> None:
     before = [paths[k].stat().st_mtime_ns for k in (0, 2)]
     assert [p.read_bytes() for p in run(10, tmp_path, samples=1, frames=3, film=False)] == drawn
     assert [paths[k].stat().st_mtime_ns for k in (0, 2)] == before
+
+
+def test_sheets_refract_and_show_where_they_err(tmp_path: Path) -> None:
+    made = run(11, tmp_path, samples=1, frames=2)
+    assert {name: len(paths) for name, paths in made.items()} == {"article": 2, "exact": 2, "error": 2}
+    article, exact, error = (read_image(made[name][1]) for name in ("article", "exact", "error"))
+    assert 0.001 < np.abs(article - exact).mean() < 0.1
+    assert error.std() > 0.05

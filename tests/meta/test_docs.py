@@ -7,6 +7,7 @@ import shlex
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import typer
 
@@ -76,6 +77,18 @@ def test_the_example_of_the_page_on_reliefs_runs(tmp_path: Path, monkeypatch: py
     exec(compile(small, "relief.md", "exec"), values)
     assert [p.name for p in tmp_path.iterdir()] == ["puddles.png"]
     assert values["frame"].depth.max() < 4.0 and values["frame"].radiance.std() > 0.01
+
+
+def test_the_example_of_the_page_on_sheets_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    small = (ROOT / "docs" / "sheet.md").read_text("utf-8").split("```python\n")[1].split("```")[0]
+    for written, tried in (("size=(640, 480)", "size=(48, 36)"), ("samples=4", "samples=1"), ("size=512", "size=64")):
+        assert written in small
+        small = small.replace(written, tried)
+    monkeypatch.chdir(tmp_path)
+    values: dict[str, Any] = {}
+    exec(compile(small, "sheet.md", "exec"), values)
+    assert [p.name for p in tmp_path.iterdir()] == ["sheet.png"]
+    assert np.isfinite(values["frame"].depth).mean() > 0.3 and values["frame"].radiance.std() > 0.01
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name)

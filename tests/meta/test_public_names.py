@@ -16,6 +16,7 @@ SCENE = [
     "PointLight",
     "AreaLight",
     "Mesh",
+    "RefractiveSheet",
     "RefractiveVolume",
     "Quality",
     "ReliefLayer",

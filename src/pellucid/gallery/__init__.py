@@ -1,6 +1,19 @@
 """Pictures that show what the renderer does; `pellucid demo` and `pellucid gallery` render them."""
 
-from . import amber, company, crystals, glow, light, relief, relief_layers, relief_rain, relief_views, solids, table
+from . import (
+    amber,
+    company,
+    crystals,
+    glow,
+    light,
+    relief,
+    relief_layers,
+    relief_rain,
+    relief_views,
+    sheet,
+    solids,
+    table,
+)
 from .picture import Picture
 
 #: All pictures, in the order in which they are shown.
@@ -16,6 +29,7 @@ PICTURES: tuple[Picture, ...] = (
     *relief_layers.PICTURES,
     *relief_rain.PICTURES,
     *relief_views.PICTURES,
+    *sheet.PICTURES,
 )
 
 __all__ = ["PICTURES", "Picture"]

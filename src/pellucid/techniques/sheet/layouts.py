@@ -13,7 +13,8 @@ SheetParams = struct(
         ("object_from_world", "mat4x4f"),
         ("limits_low", "vec2f"),  # x and z that the borders of the picture are taken to lie at
         ("limits_size", "vec2f"),
-        ("extents_size", "vec2f"),  # of the sheet, metres of its own
+        ("extents_low", "vec2f"),  # of the sheet, metres of its own
+        ("extents_size", "vec2f"),
         ("depth", "f32"),  # of the picture below the level
         ("scale", "f32"),  # metres of the world a metre of the sheet's own
         ("n_inside", "f32"),

@@ -180,6 +180,7 @@ def write_parameters(body: Body) -> None:
     item, p = body.item, body.params
     matrix = placement_matrix(item.position, item.rotation, item.scale)
     p["world_from_object"], p["object_from_world"] = matrix.T, np.linalg.inv(matrix).T
+    p["extents_low"] = [low for low, _ in item.extents_m]
     p["extents_size"] = [high - low for low, high in item.extents_m]
     p["depth"], p["scale"] = item.depth_m, item.scale
     p["n_inside"], p["n_outside"] = item.matter.n_d, item.ambient_n

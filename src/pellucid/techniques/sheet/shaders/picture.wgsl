@@ -26,7 +26,7 @@ fn sheet_picture_radiance(uv: vec2f, lod: f32, xz: vec2f) -> vec3f {
 }
 
 // Irradiance of a lamp on the picture, through the sheet as if it were level: Snell, Fresnel, exp(-a s). Shadows are
-// those where the ray enters.
+// those where the ray enters; beside the sheet nothing does.
 fn sheet_lamp_irradiance(light: u32, k: u32, above_ws: vec3f, up_ws: vec3f) -> vec3f {
     let near = lights[light].kind != LIGHT_DIRECTIONAL;
     let towards = normalize(select(lights[light].direction, lights[light].position - above_ws, near));
@@ -37,6 +37,8 @@ fn sheet_lamp_irradiance(light: u32, k: u32, above_ws: vec3f, up_ws: vec3f) -> v
     let enters_ws = above_ws + depth_m / (n * cos_inside) * (towards - cosine * up_ws);
     let sample = sample_light(light, k, enters_ws, up_ws);
     let cos_i = dot(sample.direction, up_ws);
+    let enters = ((sheet.object_from_world * vec4f(enters_ws, 1.0)).xz - sheet.extents_low) / sheet.extents_size;
+    let through = select(0.0, 1.0, all(enters >= vec2f(0.0)) && all(enters <= vec2f(1.0)));
     let passes = 1.0 - fresnel_dielectric(cos_i, sheet.n_outside, sheet.n_inside);
-    return passes * max(cos_i, 0.0) * sample.irradiance * exp(-sheet.absorption * depth_m / cos_inside);
+    return through * passes * max(cos_i, 0.0) * sample.irradiance * exp(-sheet.absorption * depth_m / cos_inside);
 }
