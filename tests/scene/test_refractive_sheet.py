@@ -10,6 +10,7 @@ import pytest
 
 import pellucid as pl
 from pellucid.fields import Ripples
+from pellucid.fields.waves import Sine
 from pellucid.io.images import write_image
 from pellucid.scene.sphere_maps import sphere_map, sphere_map_direction, sphere_map_uv
 
@@ -145,13 +146,29 @@ def test_a_scene_file_keeps_sheets(tmp_path: Path, suffix: str) -> None:
         assert before.files.keys() <= after.files.keys()
 
 
-@pytest.mark.parametrize("what", ["waves", "motion"])
-def test_what_moves_by_a_formula_is_in_no_scene_file(tmp_path: Path, what: str) -> None:
-    ripples = pl.RefractiveSheet(PICTURE, waves=Ripples((8, 8), 0.1))
-    formula = pl.RefractiveSheet(PICTURE, mesh=MESH, motion=lambda t: MESH.vertices)
-    scene = pl.Scene(pl.Camera((0, 1, 1)), objects=[ripples if what == "waves" else formula])
-    with pytest.raises(pl.SceneError, match=what):
-        pl.save_scene(scene, tmp_path / "pond.toml")
+def test_a_scene_file_keeps_waves_that_move(tmp_path: Path) -> None:
+    ripples = Ripples((8, 8), 0.1)
+    ripples.drop(0.0, 0.0, 0.1, 0.02)
+    sine = Sine(0.5, 0.02, tile_m=1.0, shape=(16, 16))
+    scene = pl.Scene(pl.Camera((0, 1, 1)), objects=[pl.RefractiveSheet(PICTURE, waves=w) for w in (ripples, sine)])
+    pl.save_scene(scene, tmp_path / "pond.toml")
+    for before, after in zip(scene.objects, pl.load_scene(tmp_path / "pond.toml").objects, strict=True):
+        np.testing.assert_allclose(after.waves.advance(0.3), before.waves.advance(0.3), atol=1e-7)
+
+
+def test_a_formula_of_the_user_is_in_no_scene_file(tmp_path: Path) -> None:
+    class Own:
+        shape, tile_m, limits_m = (4, 4), (1.0, 1.0), (0.0, 0.1)
+
+        def advance(self, time_s: float) -> np.ndarray:
+            return np.zeros((4, 4), np.float32)
+
+    for what, sheet in (
+        ("waves", pl.RefractiveSheet(PICTURE, waves=Own())),
+        ("motion", pl.RefractiveSheet(PICTURE, mesh=MESH, motion=lambda t: MESH.vertices)),
+    ):
+        with pytest.raises(pl.SceneError, match=what):
+            pl.save_scene(pl.Scene(pl.Camera((0, 1, 1)), objects=[sheet]), tmp_path / "pond.toml")
     assert list(tmp_path.iterdir()) == []
 
 
@@ -162,6 +179,8 @@ def test_what_moves_by_a_formula_is_in_no_scene_file(tmp_path: Path, what: str) 
         ('picture = "floor.png"\ndepth_m = -1', r"objects\[0\]\.depth_m"),
         ('picture = "floor.png"\nfacter = 1', "facter"),
         ('picture = "floor.png"\narrays = "other.npz"', "neither waves nor motion"),
+        ('picture = "floor.png"\nwaves = { kind = "sine", wavelenth_m = 0.3 }', r"objects\[0\]\.waves\.wavelenth_m"),
+        ('picture = "floor.png"\nwaves = { kind = "cosine" }', r"objects\[0\]\.waves\.kind"),
         ("depth_m = 1", "refractive_sheet"),
     ],
 )

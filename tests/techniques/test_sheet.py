@@ -342,7 +342,7 @@ def test_a_lit_picture_has_the_light_of_a_lamp_through_the_sheet(renderer: pl.Re
     c, a = np.sqrt(0.5), np.array([0.0, 1.0, 2.0])
     inside = np.sqrt(1.0 - 0.5 / N**2)
     e = 2.0 * c * (1.0 - fresnel_dielectric(c, 1.0, N)) * np.exp(-a * 0.5 / inside)
-    from pellucid.techniques.diffuse_light import diffuse_shares
+    from pellucid.surroundings.diffuse import diffuse_shares
 
     back = diffuse_shares(N, np.exp(-a * 0.5))[1]
     leaves = (1.0 - fresnel_dielectric(1.0, N, 1.0)) / N**2 * np.exp(-a * 0.5)

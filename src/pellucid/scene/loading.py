@@ -244,11 +244,11 @@ def _water(part: schema.WaterFile, folder: Path) -> Water:
     if "medium" in part.model_fields_set:
         given["medium"] = substance(part.medium)
     if "waves" in part.model_fields_set:
-        given["waves"] = _waves(part.waves, folder)
+        given["waves"] = _waves(part.waves, folder, "water")
     return Water(**given)
 
 
-def _waves(part: dict[str, Any], folder: Path) -> Any:
+def _waves(part: dict[str, Any], folder: Path, owner: str) -> Any:
     from pellucid.fields.waves import from_plain
     from pellucid.io.volumes import read_arrays
 
@@ -257,7 +257,7 @@ def _waves(part: dict[str, Any], folder: Path) -> Any:
         return from_plain(part, read_arrays(folder / arrays) if isinstance(arrays, str) else {})
     except SceneError as error:
         where = error.field if error.field.startswith("waves") else f"waves.{error.field}"
-        raise SceneError(f"water.{where}", error.reason, error.remedy) from error
+        raise SceneError(f"{owner}.{where}", error.reason, error.remedy) from error
 
 
 def _relief_layer(part: schema.ReliefLayerFile, folder: Path, where: str) -> ReliefLayer:
@@ -285,6 +285,8 @@ def _sheet(part: schema.SheetFile, folder: Path) -> RefractiveSheet:
 
     given = part.given("type", "mesh", "arrays", "medium")
     given |= {name: folder / given[name] for name in PICTURES if name in given}
+    if "waves" in given:
+        given["waves"] = _waves(part.waves, folder, "refractive_sheet")
     if "arrays" in part.model_fields_set:
         arrays = read_arrays(folder / part.arrays)
         if not arrays or not set(arrays) <= {"waves", "motion"}:

@@ -206,21 +206,20 @@ def _waves(waves: Any, label: str, where: str, beside: Sidecars) -> dict[str, An
 
 def _sheet(sheet: RefractiveSheet, label: str, where: str, beside: Sidecars) -> dict[str, Any]:
     """Pictures by name or beside the file, heights and positions as arrays; a formula cannot be stated."""
-    for name in ("waves", "motion"):
-        value = getattr(sheet, name)
-        if value is not None and not isinstance(value, np.ndarray):
-            kind = type(value).__name__
-            raise SceneError(f"{where}.{name}", f"{kind} cannot be written to a scene file", "store arrays")
     said: dict[str, Any] = {}
+    if callable(sheet.motion):
+        raise SceneError(f"{where}.motion", "is a function, which no scene file can state", "store positions (T, V, 3)")
+    if sheet.waves is not None and not isinstance(sheet.waves, np.ndarray):
+        said["waves"] = _waves(sheet.waves, label, where, beside)
+    arrays = {name: value for name in ("waves", "motion") if isinstance(value := getattr(sheet, name), np.ndarray)}
+    if arrays:
+        said["arrays"] = beside.arrays(label, arrays)
     for name in PICTURES:
         pixels = getattr(sheet, name)
         if name in sheet.files:
             said[name] = beside.relative(sheet.files[name][0])
         elif pixels is not None:
             said[name] = beside.picture(f"{label}.{name}", pixels)
-    arrays = {name: value for name in ("waves", "motion") if (value := getattr(sheet, name)) is not None}
-    if arrays:
-        said["arrays"] = beside.arrays(label, arrays)
     if sheet.mesh is not None:
         said["mesh"] = _geometry(sheet.mesh, f"{label}.mesh", beside) | _stated(sheet.mesh, ("shading",))
     return said | _stated(sheet, LOOKS[RefractiveSheet])

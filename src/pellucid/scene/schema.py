@@ -382,12 +382,16 @@ class WaterFile(Model):
 
 
 class SheetFile(Placed):
-    """A sheet over a picture; ``arrays`` is an .npz with waves or motion."""
+    """A sheet over a picture; its waves are what ``fields.waves.from_plain`` understands, or an array.
+
+    ``arrays`` is an .npz with waves (H, W) or motion (T, V, 3).
+    """
 
     type: Literal["refractive_sheet"]
     picture: StrictStr
     depth_m: Number = UNSET
     size_m: Number | tuple[Number, Number] = UNSET
+    waves: dict[StrictStr, Any] = UNSET
     arrays: StrictStr = UNSET
     segments: StrictInt = UNSET
     mesh: MeshFile = UNSET
