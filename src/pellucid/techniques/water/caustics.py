@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 SHADERS = "techniques/water/shaders/"
 ROW = 64  # cells of a workgroup, in a row as in memory
 DEPTH_SIZE = 1024  # texels a side of what the camera along a light sees
+SLICES = 8  # of the water, for beams in it; photons to one texel of them along a side:
+SLICE_CELLS = 2
 OPEN_M = 10.0  # depth of water that nothing lies in, for what waves focus there
 LOWEST_SUN = 1e-3  # sine of the least elevation
 
@@ -68,8 +70,10 @@ class WaterLight:
         self._lit: Any = None
         self._size: tuple[int, ...] = ()
         self._above: Any = None
+        self._above_view: Any = None
         self._beams: Any = None
         self._sums: Any = None
+        self._slices: dict[int, Any] = {}
 
     @property
     def nbytes(self) -> int:
@@ -89,7 +93,13 @@ class WaterLight:
         if not bodies:
             self._drawn = self._lit = None
             return
+        for number, body in enumerate(bodies):
+            if body.params["region"] != number:
+                body.params["region"] = number
+                self.device.write(body.bindings["water"], body.params.reshape(1))
         channels = max(channel_count(body) for body in bodies)
+        if any(body.quality.god_rays for body in bodies):
+            channels = max(channels, 2)  # room for the sums of slices
         anew = self._allocate(side, max(len(lamps), 1) * len(bodies), channels) or anew
         records = [
             (body, self._lamp((k, j), caustic_params(body, region, lamp, surroundings.submersion.layer(k, j))))
@@ -138,9 +148,9 @@ class WaterLight:
             "caustic": lamp.buffer,
             "caustic_beams": self._beams,
             "caustic_sums": self._sums,
-            "caustic_below": around.depth_map.create_view(dimension="2d-array"),
-            "caustic_above": self._above.create_view(dimension="2d-array"),
-            "caustic_map_out": around.light_map.create_view(dimension="2d-array"),
+            "caustic_below": surroundings.bindings["submerged_depth"],
+            "caustic_above": self._above_view,
+            "caustic_map_out": surroundings.bindings["submerged_light"],
         }
         groups = (-(-side // ROW), side, int(lamp.params["channels"]))
         iteration = {"CAUSTIC_ITERATION": float(body.quality.caustic_intersection == "iteration")}
@@ -149,6 +159,28 @@ class WaterLight:
             self._kernel("caustic_refract", iteration).run(groups, bound, encoder)
             self._kernel("caustic_splat").run(groups, bound, encoder)
         self._kernel("caustic_resolve").run((*groups[:2], 1), bound, encoder)
+        if body.quality.god_rays and lamp.params["layer"] == around.layer(int(body.params["region"]), 0):
+            slices = self._slices_of(int(body.params["region"]), side // SLICE_CELLS)
+            bound["caustic_slice_out"] = slices
+            groups = (-(-slices.size[0] // ROW), slices.size[1], SLICES)
+            encoder.clear_buffer(self._sums)
+            self._kernel("caustic_slice").run(groups, bound, encoder)
+            self._kernel("caustic_slice_resolve").run(groups, bound, encoder)
+
+    def _slices_of(self, region: int, side: int) -> Any:
+        kept = self._slices.get(region)
+        if kept is None or kept.size[0] != side:
+            size, usage = (side, side, SLICES), ("sample", "storage", "copy")
+            self._slices[region] = kept = self.device.texture(
+                size=size, format="rgba16float", dimension="3d", usage=usage, label="light in slices of water"
+            )
+        return kept
+
+    def bindings(self, body: Any) -> dict[str, Any]:
+        """What the passes of a body read of its light, by their WGSL names."""
+        region = int(body.params["region"])
+        slices = self._slices.get(region) or self._slices_of(region, 1)
+        return {"caustic_slices": slices, "caustic_slice_sampler": self.device.sampler("linear", "clamp")}
 
     def _kernel(self, name: str, constants: dict[str, float] | None = None) -> ComputeKernel:
         key = (name, *(constants or {}).values())
@@ -180,6 +212,7 @@ class WaterLight:
         self._above = self.device.texture(
             size=(DEPTH_SIZE, DEPTH_SIZE), format=DEPTH_FORMAT, layers=layers, usage=("sample", "render"), label="above"
         )
+        self._above_view = self._above.create_view(dimension="2d-array")
         self._size = side, layers, channels
         return True
 
@@ -263,7 +296,7 @@ def _lifted(to_light: np.ndarray) -> np.ndarray:
 
 
 def _choices(quality: WaterQuality) -> tuple[Any, ...]:
-    return quality.caustics, quality.caustic_intersection, quality.caustic_size
+    return quality.caustics, quality.caustic_intersection, quality.caustic_size, quality.god_rays
 
 
 def _pair(values: np.ndarray) -> tuple[float, float]:

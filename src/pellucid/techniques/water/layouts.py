@@ -30,6 +30,7 @@ WaterParams = struct(
         ("point_distance_m", "f32"),
         ("underside_distance_m", "f32"),
         ("short_slopes", "vec3f"),  # mean squares of slopes of waves too short for the maps: xx, zz, xz
+        ("region", "u32"),  # of surroundings.submersion
         ("wave_layers", "u32"),
         ("time_s", "f32"),
         ("wave_tiles", ("vec4f", WAVE_LAYERS)),  # by layer: width and depth in metres, 1 where it repeats, 0
@@ -67,4 +68,12 @@ CausticParams = struct(
 )
 
 # A photon of one channel that stands for a cell of the surface.
-CausticBeam = struct([("landed", "vec2f"), ("flux", "f32"), ("depth_m", "f32")])
+CausticBeam = struct(
+    [
+        ("landed", "vec2f"),  # in texels of the map
+        ("flux", "f32"),  # over that which falls on a cell of a level surface
+        ("depth_m", "f32"),  # of the landing below the surface
+        ("entered", "vec2f"),  # like landed, where it came through the surface
+        ("entered_m", "f32"),  # below the highest wave
+    ]
+)

@@ -70,6 +70,7 @@ class Body:
             "WATER_FRESNEL": float(FRESNELS.index(quality.fresnel)),
             "WATER_COLOR": float(COLORS.index(quality.color)),
             "WATER_FOAM": float(self.item.foam > 0.0),
+            "WATER_GOD_RAYS": float(quality.god_rays),
             "WATER_DISPERSION": float(self.item.dispersion and self.item.matter.is_dispersive),
         }
 
@@ -137,7 +138,7 @@ class WaterTechnique:
             size = (*targets.size, 1)
             encoder.copy_texture_to_texture({"texture": drawn}, {"texture": copy}, size)
         hits = self._target("water_hits", HIT_FORMAT, targets.size)
-        bound = {**self._nothing, **body.bindings, **surroundings.bindings}
+        bound = {**self._nothing, **body.bindings, **surroundings.bindings, **self._light.bindings(body)}
         bound |= {name: copy for name, (_, copy) in copies.items()}
         if body.pictures is not None:
             waves = body.waves.limits_m, body.waves.slope

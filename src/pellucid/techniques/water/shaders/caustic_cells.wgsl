@@ -16,3 +16,8 @@ fn caustic_cell(xy: vec2u, channel: u32) -> u32 {
 fn caustic_place(cells: vec2f) -> vec2f {
     return mix(water.low, water.high, cells / f32(caustic_side()));
 }
+
+// The way back, which need not be on the map
+fn caustic_texel(seen: vec2f) -> vec2f {
+    return (seen - water.low) / (water.high - water.low) * f32(caustic_side());
+}

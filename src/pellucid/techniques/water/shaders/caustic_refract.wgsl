@@ -35,8 +35,8 @@ fn caustic_beam(cell: vec2u, channel: u32) -> CausticBeam {
     } else {
         depth_m = caustic_march(ray);
     }
-    let landed = (caustic_seen(ray, depth_m) - water.low) / (water.high - water.low) * f32(caustic_side());
-    return CausticBeam(landed, flux, depth_m - ray.depth_m);
+    let landed = caustic_texel(caustic_seen(ray, depth_m));
+    return CausticBeam(landed, flux, depth_m - ray.depth_m, caustic_texel(ray.seen), ray.depth_m);
 }
 
 // Share of the lamp that meshes over the surface do not hide

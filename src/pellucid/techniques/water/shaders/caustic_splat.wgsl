@@ -1,25 +1,13 @@
-// The light of each cell is spread over the parallelogram between its neighbours' landings, and over the picture of the
-// lamp: along each axis by the projection of that, a trapezoid. Places of neighbours touch, so that what is spread apart
-// stays even, and nothing is lost but rounding, which goes on to the next texel.
+// The light of each cell lands between the landings of its neighbours.
 //!import techniques/water/shaders/caustic_cells
+//!import techniques/water/shaders/caustic_spread
 
-const SPLAT_WIDEST = 6.0;     // texels
-const SPLAT_TORN = 12.0;      // texels: what lies farther apart was parted by an edge
-const SPLAT_SHARPEST = 0.05;  // texels, of the picture of a lamp
-const SPLAT_TEXELS = 10.0;
-
-// A trapezoid over the middles of texels, and those that it touches
-struct Spread {
-    middle: f32,
-    wide: f32,
-    narrow: f32,
-    first: f32,
-    last: f32,
-}
+const SPLAT_TORN = 12.0;  // texels: what lies farther apart was parted by an edge
 
 @compute @workgroup_size(64, 1)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    if id.x >= caustic_side() {
+    let side = caustic_side();
+    if id.x >= side {
         return;
     }
     let beam = caustic_beams[caustic_cell(id.xy, id.z)];
@@ -28,33 +16,12 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let along = landed_beside(id, vec2i(1, 0), beam.landed);
     let across = landed_beside(id, vec2i(0, 1), beam.landed);
-    let texel_m = (water.high - water.low) / f32(caustic_side());
+    let texel_m = (water.high - water.low) / f32(side);
     let lamp = 2.0 * caustic.sun_slope * beam.depth_m / texel_m;
-    let over_x = spread(along.x, along.z, across.z, lamp.x);
-    let over_y = spread(across.y, across.w, along.w, lamp.y);
-    let side = f32(caustic_side());
-    let row = id.z * caustic_side();
-    var rest = 0.5;
-    var below_y = 0.0;
-    for (var y = over_y.first; y <= over_y.last; y += 1.0) {
-        let until_y = spread_below(over_y, y + 1.0);
-        let units = beam.flux * CAUSTIC_UNITS * (until_y - below_y);
-        below_y = until_y;
-        var below_x = 0.0;
-        for (var x = over_x.first; x <= over_x.last; x += 1.0) {
-            let until_x = spread_below(over_x, x + 1.0);
-            let value = units * (until_x - below_x) + rest;
-            below_x = until_x;
-            let whole = floor(value);
-            rest = value - whole;
-            if min(x, y) >= 0.0 && max(x, y) < side && whole > 0.0 {
-                atomicAdd(&caustic_sums[(row + u32(y)) * caustic_side() + u32(x)], u32(whole));
-            }
-        }
-    }
+    caustic_spread(vec2f(along.x, across.y), along.zw, across.zw, lamp, beam.flux, vec3u(side, side, id.z * side));
 }
 
-// Middle and width of the place between the neighbours of a cell on both sides, in texels
+// Middle and extent of the place between the neighbours of a cell on both sides, in texels
 fn landed_beside(id: vec3u, step: vec2i, here: vec2f) -> vec4f {
     let before = landed_at(vec2i(id.xy) - step, id.z, here, step);
     let after = landed_at(vec2i(id.xy) + step, id.z, here, -step);
@@ -69,26 +36,4 @@ fn landed_at(cell: vec2i, channel: u32, here: vec2f, back: vec2i) -> vec2f {
     let found = caustic_beams[caustic_cell(vec2u(clamp(asked, vec2i(0), vec2i(side - 1))), channel)].landed;
     let way = select(found - here, here - found, outside);
     return here + select(way, -vec2f(back), any(abs(way) > vec2f(SPLAT_TORN)));
-}
-
-// Texels under a box of one width seen through a box of another: differences of its integral. The narrower box takes
-// the lamp's picture into it: the wider one must go on to touch its neighbours.
-fn spread(middle: f32, one: f32, other: f32, lamp: f32) -> Spread {
-    let sides = min(abs(vec2f(one, other)), vec2f(SPLAT_WIDEST));
-    let smaller = min(min(sides.x, sides.y) + min(lamp, SPLAT_WIDEST), 0.4 * SPLAT_WIDEST);
-    let wide = max(max(max(sides.x, sides.y), smaller), SPLAT_SHARPEST);
-    let narrow = max(min(max(sides.x, sides.y), smaller), SPLAT_SHARPEST);
-    let reach = 0.5 * (wide + narrow);
-    let first = floor(middle - reach);
-    return Spread(middle, wide, narrow, first, min(ceil(middle + reach) - 1.0, first + SPLAT_TEXELS));
-}
-
-// Share that lies below x
-fn spread_below(over: Spread, x: f32) -> f32 {
-    let from_middle = abs(x - over.middle);
-    let from_edge = clamp(0.5 * (over.wide + over.narrow) - from_middle, 0.0, over.narrow);
-    let even = from_middle / over.wide;
-    let ramp = 0.5 - 0.5 * from_edge * from_edge / (over.wide * over.narrow);
-    let half = select(ramp, even, from_middle <= 0.5 * (over.wide - over.narrow));
-    return 0.5 + select(half, -half, x < over.middle);
 }

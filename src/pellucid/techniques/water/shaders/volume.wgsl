@@ -1,7 +1,6 @@
 // What water takes from and adds to light along a straight way through it.
 //!import optics/attenuation
-//!import surroundings/shaders/environment
-//!import techniques/water/shaders/bindings
+//!import techniques/water/shaders/volume_light
 
 struct WaterPath {
     transmittance: vec3f,
@@ -10,13 +9,17 @@ struct WaterPath {
 
 override WATER_COLOR: u32 = 0u;  // 0 what the water holds, 1 towards one colour [mihalik2008, eqs. 4, 5]
 
+const LONGEST_PATH_M = 1e6;
+
+// C_w + exp(-k d)(C - C_w) [mihalik2008, eqs. 4, 5, 10]: C_w is seen from outside, radiance in water is n^2 times that.
+// Or exp(-(a + b) d), and what is scattered into the way.
 fn water_path(p_ws: vec3f, direction_ws: vec3f, length_m: f32) -> WaterPath {
+    let way_m = min(length_m, LONGEST_PATH_M);
     if WATER_COLOR == 1u {
-        let kept = transmittance(vec3f(water.clarity), length_m);
-        return WaterPath(kept, (1.0 - kept) * water.color);
+        let kept = transmittance(vec3f(water.clarity), way_m);
+        let denser = water.n_water / water.n_outside;
+        return WaterPath(kept, (1.0 - kept) * water.color * denser * denser);
     }
     let extinction = water.absorption + water.scattering;
-    let kept = transmittance(extinction, length_m);
-    let albedo = water.scattering / max(extinction, vec3f(1e-9));
-    return WaterPath(kept, (1.0 - kept) * albedo * environment_mean_radiance());
+    return WaterPath(transmittance(extinction, way_m), water_inscatter(p_ws, direction_ws, way_m));
 }
