@@ -1,5 +1,6 @@
 // Second pass: the radiance of what each pixel shows of the water.
 //!import surroundings/shaders/full_picture
+//!import techniques/water/shaders/dilution
 //!import techniques/water/shaders/interface
 
 // A camera within water measures L / n^2, as one does that stands in air behind a round port: so a picture neither
@@ -10,15 +11,15 @@ fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let ray = camera_ray(position.xy);
     let p_ws = ray.origin + hit.t * ray.direction;
     var radiance = textureLoad(opaque_color, vec2i(position.xy), 0).rgb;
-    let denser = water.n_water.g / water.n_outside;
+    let denser = water_dilution(water.n_water.g, water.n_outside);
     let within = hit.kind == WATER_BELOW || hit.kind >= WATER_FOG;
     let meets = hit.kind != WATER_NONE && hit.kind < WATER_FOG;
     radiance = select(radiance, vec3f(0.0), meets);
-    radiance *= select(1.0, denser * denser, hit.kind == WATER_OUT);
+    radiance *= select(1.0, denser, hit.kind == WATER_OUT);
     radiance += interface_radiance(hit, meets, p_ws, ray.direction);
     if within {
         let path = water_path(ray.origin, ray.direction, hit.t);
-        radiance = (path.transmittance * radiance + path.inscatter) / (denser * denser);
+        radiance = (path.transmittance * radiance + path.inscatter) / denser;
     }
     if hit.kind == WATER_NONE {
         discard;

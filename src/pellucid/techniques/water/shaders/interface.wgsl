@@ -1,11 +1,13 @@
 // Radiance that the surface of water sends to a viewer on either side of it.
 //!import optics/fresnel
 //!import optics/snell
+//!import techniques/water/shaders/dilution
 //!import techniques/water/shaders/foam
 //!import techniques/water/shaders/glitter
 //!import techniques/water/shaders/hit
 //!import techniques/water/shaders/seen
 //!import techniques/water/shaders/surface
+//!import techniques/water/shaders/underside
 //!import techniques/water/shaders/volume
 
 override WATER_FRESNEL: u32 = 0u;  // 0 exact, 1 Schlick's curve
@@ -32,15 +34,18 @@ fn interface_radiance(hit: WaterHit, meets: bool, p_ws: vec3f, direction_ws: vec
         let n_i = select(water.n_outside, n, from_within);
         let n_t = select(n, water.n_outside, from_within);
         let channels = select(vec3f(1.0), vec3f(vec3u(k) == vec3u(0u, 1u, 2u)), WATER_DISPERSION);
-        let inside = refract(direction_ws, n_ws, n_i, n_t);
-        let share = water_reflectance(cos_i, n_i, n_t);
-        let ratio = n_i / n_t;
-        let weight = select(channels * (1.0 - share) * ratio * ratio, reflected, mirrors);
+        var passing = refract(direction_ws, n_ws, n_i, n_t).direction;
+        var share = water_reflectance(cos_i, n_i, n_t);
+        if WATER_UNDERSIDE == 1u {
+            passing = select(passing, underside_way(direction_ws, n_ws, n_i, n_t), from_within);
+            share = select(share, underside_reflectance(cos_i, n_i, n_t), from_within);
+        }
+        let weight = select(channels * (1.0 - share) * water_dilution(n_i, n_t), reflected, mirrors);
         if !mirrors {
             reflected += channels * share;
         }
         let below = mirrors == from_within;
-        let way = select(inside.direction, water_mirrored(direction_ws, n_ws, hit.kind), mirrors);
+        let way = select(passing, water_mirrored(direction_ws, n_ws, hit.kind), mirrors);
         if any(weight > vec3f(0.0)) {
             radiance += weight * water_look(p_ws, way, below);
         }

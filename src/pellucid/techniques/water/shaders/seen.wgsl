@@ -3,10 +3,10 @@
 //!import techniques/water/shaders/seen_march
 //!import techniques/water/shaders/seen_point
 //!import techniques/water/shaders/seen_rays
+//!import techniques/water/shaders/underside
 
 override WATER_REFRACTION: u32 = 0u;  // water_quality.REFRACTIONS
 override WATER_REFLECTION: u32 = 0u;  // water_quality.REFLECTIONS
-override WATER_UNDERSIDE: u32 = 0u;   // water_quality.UNDERSIDES
 override WATER_FALLBACK: u32 = 0u;    // water_quality.FALLBACKS
 
 const SEEN_BY_RAYS = 0u;
