@@ -33,6 +33,7 @@ def animate(
     size: tuple[int, int] = (800, 600),
     samples: int = 4,
     *,
+    start_s: float = 0.0,
     only: tuple[int, int] | None = None,
     overwrite: bool = False,
     video: str | PathLike[str] | None = None,
@@ -46,12 +47,13 @@ def animate(
 
     Parameters
     ----------
-    scene_at : the scene at a time in seconds; frame i is drawn at i / fps. What changes inside of it is not noticed:
-        draw again with `overwrite`, or let a setting change with it.
+    scene_at : the scene at a time in seconds; frame i is drawn at start_s + i / fps. What changes inside of it
+        is not noticed: draw again with `overwrite`, or let a setting change with it.
     folder : where the frames go; made when it is missing.
     frames : how many the whole animation has.
     fps : frames a second.
     size : (width, height) in pixels. samples : jittered pictures that are averaged for each frame.
+    start_s : time of the first frame, seconds >= 0: water may have moved before it.
     only : (first, end) draws frames first to end - 1, as a Python slice counts.
     overwrite : draw again what is there. With other settings than before, all old frames are removed first.
     video : an ``.mp4`` to write of all frames afterwards; needs ``pip install 'pellucid[video]'``.
@@ -66,7 +68,7 @@ def animate(
     ------
     SceneError : a number out of range. AssetError : the folder cannot be used, or holds frames of something else.
     """
-    first, end = _checked(frames, fps, only)
+    first, end = _checked(frames, fps, start_s, only)
     target = Path(folder)
     if video is not None:
         from pellucid.io.video import check_video
@@ -77,6 +79,7 @@ def animate(
         "fps": float(fps),
         "size": [int(s) for s in size],
         "samples": int(samples),
+        **({"start_s": float(start_s)} if start_s else {}),
         **(settings or {}),
     }
     every = frame_paths(target, frames)
@@ -85,7 +88,8 @@ def animate(
     missing = [i for i in wanted if overwrite or not every[i].exists()]
     for done, i in enumerate(missing):
         before = len(wanted) - len(missing) + done
-        _draw(scene_at(i / fps), every[i], i / fps, size, samples, _within(progress, i, before, len(wanted)))
+        time = start_s + i / fps
+        _draw(scene_at(time), every[i], time, size, samples, _within(progress, i, before, len(wanted)))
     if video is not None:
         _write_video(video, every, fps)
     return every[first:end]
@@ -131,11 +135,12 @@ def _turned(
     return about[0] + c * x + s * z, about[1] + y, about[2] + c * z - s * x
 
 
-def _checked(frames: Any, fps: Any, only: Any) -> tuple[int, int]:
+def _checked(frames: Any, fps: Any, start_s: Any, only: Any) -> tuple[int, int]:
     from pellucid.scene import checks
 
     checks.integer("animate.frames", frames, low=1, high=MOST_FRAMES)
     checks.number("animate.fps", fps, low=0.0, high=FASTEST_FPS, exclusive=True, unit="frames a second")
+    checks.number("animate.start_s", start_s, low=0.0, unit="seconds")
     first, end = (0, frames) if only is None else only
     checks.integer("animate.only", first, low=0, high=frames)
     checks.integer("animate.only", end, low=0, high=frames)

@@ -17,6 +17,7 @@ class Still:
     build: Any
     you_should_see: str = "a grey ball"
     samples: int = 1
+    time_s: float = 0.0
 
 
 def scene() -> pl.Scene:

@@ -30,7 +30,7 @@ def test_words_say_what_there_is_to_see(picture: Picture) -> None:
 
 @pytest.mark.parametrize("picture", PICTURES, ids=lambda p: p.name)
 def test_a_picture_renders(picture: Picture, renderer: Renderer) -> None:
-    frame = renderer.render(picture.build(), (64, 48))
+    frame = renderer.render(picture.build(), (64, 48), time=picture.time_s)
     assert np.isfinite(frame.radiance).all()
     # Pure colours lie outside of Rec. 709, where a channel may be negative; luminance may not.
     assert (frame.radiance @ (0.2126, 0.7152, 0.0722)).min() >= -1e-5

@@ -75,6 +75,15 @@ def animate(
     light_orbit: Annotated[
         float, typer.Option(parser=parse_degrees, metavar="DEGREES", help="Carry the lamps about it instead, or too.")
     ] = 0.0,
+    start: Annotated[
+        float | None,
+        typer.Option(
+            min=0.0,
+            metavar="SECONDS",
+            help="When it begins, for what moves by itself, such as water. "
+            "[dim]\\[default: the gallery's, 0 for a file][/dim]",
+        ),
+    ] = None,
     only: Annotated[
         Span | None,
         typer.Option(parser=parse_span, metavar="FIRST:END", help="Draw these frames only; 10:20 are 10 to 19."),
@@ -90,8 +99,8 @@ def animate(
     """Draw a scene again and again while the camera or the light goes round it.
 
     Frames are frame_0000.png, frame_0001.png and so on. Both ways round are about the vertical through what the
-    camera looks at; frame I of N stands at I/N of the angle, so that 360 degrees close a loop. Without either, all
-    frames look alike.
+    camera looks at; frame I of N stands at I/N of the angle, so that 360 degrees close a loop. Without either, only
+    what moves by itself does: water with waves.
 
     Frames that are there already are kept: after ctrl-C the same command goes on. animation.json beside them says what
     they were made with, and other settings are refused without --overwrite. Several machines can share the work by
@@ -101,7 +110,7 @@ def animate(
     from pellucid.animation import frame_paths
 
     begun = time.perf_counter()
-    build, usual_samples, identity = _source(source)
+    build, usual_samples, usual_start, identity = _source(source)
     wanted = _range(only, frames)
     if video is not None:
         _check_video(video)
@@ -110,13 +119,15 @@ def animate(
     device = open_device()
     check_size(size, device.limits["max-texture-dimension-2d"])
     there = 0 if overwrite else _finished(output, frames, wanted)
+    begins = usual_start if start is None else start
     settings = {**identity, "orbit_deg": orbit, "light_orbit_deg": light_orbit}
     try:
         with progress_bar() as bar:
             bar.overall("preparing", there / (wanted[1] - wanted[0]))
             made = draw(
-                _moving(build, orbit, light_orbit, frames / fps), output, frames, fps, size, samples or usual_samples,
-                only=wanted, overwrite=overwrite, video=video, settings=settings,
+                _moving(build, orbit, light_orbit, begins, frames / fps), output, frames, fps, size,
+                samples or usual_samples, start_s=begins, only=wanted, overwrite=overwrite, video=video,
+                settings=settings,
                 progress=lambda frame, share: bar.overall(f"frame {frame} of {frames}", share),
             )  # fmt: skip
     except KeyboardInterrupt:
@@ -158,13 +169,14 @@ def _check_video(video: Path) -> None:
     check_video(video)
 
 
-def _source(name: str) -> tuple[Callable[[], Scene], int, dict[str, Any]]:
-    """How to make the scene, its usual number of samples, and what tells it from others."""
+def _source(name: str) -> tuple[Callable[[], Scene], int, float, dict[str, Any]]:
+    """How to make the scene, its usual number of samples and first moment, and what tells it from others."""
     from pellucid.gallery import PICTURES
 
     pictures = {picture.name: picture for picture in PICTURES}
     if name in pictures and not Path(name).is_file():
-        return pictures[name].build, pictures[name].samples, {"scene": name}
+        picture = pictures[name]
+        return picture.build, picture.samples, picture.time_s, {"scene": name}
     path = Path(name)
     if not path.suffix and not path.exists():
         close = difflib.get_close_matches(name, pictures, n=1, cutoff=0.4)
@@ -175,17 +187,19 @@ def _source(name: str) -> tuple[Callable[[], Scene], int, dict[str, Any]]:
     return _of_file(path)
 
 
-def _of_file(path: Path) -> tuple[Callable[[], Scene], int, dict[str, Any]]:
+def _of_file(path: Path) -> tuple[Callable[[], Scene], int, float, dict[str, Any]]:
     from pellucid.animation import digest
     from pellucid.io.files import existing_file, suffix_of
     from pellucid.scene.files import SUFFIXES, load_scene
 
     suffix_of(existing_file(path), SUFFIXES, "animated")
     scene = load_scene(path)
-    return lambda: scene, 4, {"scene": path.name, "scene_sha256": digest(path)}
+    return lambda: scene, 4, 0.0, {"scene": path.name, "scene_sha256": digest(path)}
 
 
-def _moving(build: Callable[[], Scene], orbit: float, light_orbit: float, length_s: float) -> Callable[[float], Scene]:
+def _moving(
+    build: Callable[[], Scene], orbit: float, light_orbit: float, start_s: float, length_s: float
+) -> Callable[[float], Scene]:
     """The scene at a time; it is built at the first frame that has to be drawn."""
     from pellucid.animation import lit_from, orbited
 
@@ -196,7 +210,7 @@ def _moving(build: Callable[[], Scene], orbit: float, light_orbit: float, length
             built.append(build())
             if light_orbit and not built[0].lights:
                 raise SceneError("--light-orbit", "finds no lamp in this scene", "use --orbit, or give it a light")
-        still, part = built[0], time / length_s
+        still, part = built[0], (time - start_s) / length_s
         camera = orbited(still.camera, orbit * part)
         return still.replace(camera=camera, lights=lit_from(still.lights, light_orbit * part, still.camera.target))
 

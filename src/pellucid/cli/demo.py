@@ -105,8 +105,9 @@ def _draw(picture: Any, path: Path, size: Size, samples: int, bar: Bar, before: 
     scene = picture.build()
     built = time.perf_counter() - begun
     frame = default_renderer().render(
-        scene, size, samples=samples, progress=lambda share: bar.overall(f"{label}: drawing", (before + share) / count)
-    )
+        scene, size, time=picture.time_s, samples=samples,
+        progress=lambda share: bar.overall(f"{label}: drawing", (before + share) / count),
+    )  # fmt: skip
     frame.save(path)
     prepare = frame.timings["prepare"] / 1e3
     return Drawn(picture.title, frame.srgb(), built + prepare, frame.timings["total"] / 1e3 - prepare)

@@ -80,6 +80,7 @@ class Wish:
     fov: float | None
     exposure: float | None
     tone_mapping: str | None
+    time_s: float
 
 
 def render(
@@ -146,6 +147,9 @@ def render(
         typer.Option(parser=parse_positive, metavar="FACTOR", help="Factor on all light before tone mapping."),
     ] = None,
     tone_mapping: Annotated[ToneMapping | None, typer.Option(help="Curve from light to screen.")] = None,
+    at: Annotated[
+        float, typer.Option("--time", min=0.0, metavar="SECONDS", help="When, for water and all that moves by itself.")
+    ] = 0.0,
 ) -> None:
     """Draw a scene file, or a mesh as a thing of glass, to a picture.
 
@@ -156,7 +160,8 @@ def render(
     """
     wish = Wish(
         size, samples, medium, dispersion, boundary.value, resolution, _rounding(rounding, resolution),
-        floor.value, up.value, scale, environment, camera, target, fov, exposure, tone_mapping and tone_mapping.value,
+        floor.value, up.value, scale, environment, camera, target, fov, exposure,
+        tone_mapping and tone_mapping.value, at,
     )  # fmt: skip
     check_output(output, PICTURES)
     is_scene = _is_scene(source)
@@ -207,7 +212,9 @@ def _draw(source: Path, is_scene: bool, output: Path, wish: Wish) -> None:
     with progress_bar() as bar:
         scene, story = _scene_of_file(source, wish, bar) if is_scene else _scene_of_mesh(source, wish, bar)
         loaded = time.perf_counter()
-        frame = default_renderer().render(scene, wish.size, samples=wish.samples, progress=bar.step("drawing"))
+        frame = default_renderer().render(
+            scene, wish.size, time=wish.time_s, samples=wish.samples, progress=bar.step("drawing")
+        )
     frame.save(output)
     prepared = frame.timings["prepare"] / 1e3
     drawn = frame.timings["total"] / 1e3 - prepared

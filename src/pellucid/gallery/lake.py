@@ -77,9 +77,17 @@ def lake_scene(
     sky, lamp = stage.daylight(*sun)
     lake = Water(**({"extent_m": SIZE_M, "medium": "clear lake", "waves": waves} | water))
     return Scene(
-        camera or Camera((3.0, 3.2, 33.0), (-1.0, 0.0, 8.0), fov_deg=48.0, far_m=400.0),
+        camera or Camera((1.5, 1.6, 20.5), (-0.5, 0.45, 8.0), fov_deg=46.0, far_m=400.0),
         sky, [lamp], [*lake_meshes(folder, **(size or {})), lake], exposure=0.8, tone_mapping="khronos",
     )  # fmt: skip
+
+
+def underwater_window(
+    waves: Any = None, sun: Sequence[float] = (48.0, 150.0), camera: Camera | None = None, **water: Any
+) -> Scene:
+    """The lake seen by a diver who looks up: the whole sky in a window, and the bed of the lake mirrored around it."""
+    scene = lake_scene(waves, camera or Camera((0.0, -2.4, 6.0), (0.0, 0.0, 5.0), fov_deg=104.0), sun, **water)
+    return scene.replace(exposure=1.4)
 
 
 def _normals(patch: Patch) -> np.ndarray:

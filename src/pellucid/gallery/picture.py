@@ -19,6 +19,7 @@ class Picture:
     you_should_see : what a true picture of it shows.
     build : makes the scene; may take seconds, since bodies are put on voxels there.
     samples : jittered pictures that are averaged, enough for smooth edges.
+    time_s : when it is drawn, and where an animation of it begins: rings on water need time to spread.
     """
 
     name: str
@@ -26,3 +27,4 @@ class Picture:
     you_should_see: str
     build: Callable[[], Scene]
     samples: int = 4
+    time_s: float = 0.0

@@ -1,6 +1,7 @@
 // Directional light in water: refracted at a level surface, focused by its waves as its map says, weakened on its way.
 //!import optics/fresnel
 //!import surroundings/shaders/lights
+//!import surroundings/shaders/shadow
 //!import surroundings/shaders/submersion
 
 // Unit direction towards a light, in the water; `index` is that of the water over that above
@@ -44,6 +45,9 @@ fn submerged_beam(light: u32, p_ws: vec3f, n_ws: vec3f, direction: vec3f, at: Su
             let map = u32(submersion.level[at.water].z) + u32(layer);
             share = textureSampleLevel(submerged_light, caustic_sampler, uv, map, 0.0).rgb;
             share *= mix(1.0, submerged_visibility(at.water, map, p_ws, n_ws, slope), camera.z);
+        } else {
+            // Light that has not come in through the surface: past walls, if there are any
+            share *= shadow_visibility(light, p_ws, n_ws);
         }
     }
     return share * exp(-extinction * path_m);
