@@ -259,8 +259,8 @@ def test_fresnels_law_or_a_fixed_share(renderer: pl.Renderer) -> None:
 
 def test_absorption_is_that_of_the_way_to_the_picture(renderer: pl.Renderer) -> None:
     frame = drawn(renderer, absorption=(0.0, 1.0, 4.0), reflection="none")
-    seen = np.isfinite(frame.depth)
     p, xz, _ = level_hits(CAMERA)
+    seen = np.isfinite(frame.depth) & (np.abs(xz) < 1.0).all(axis=-1)
     way = np.sqrt(((p[..., (0, 2)] - xz) ** 2).sum(axis=-1) + 0.4**2)[..., None]
     np.testing.assert_allclose(frame.radiance[seen], (0.5 * np.exp(-way * (0.0, 1.0, 4.0)))[seen], rtol=1e-3)
 
@@ -293,6 +293,13 @@ def test_from_below_there_is_snells_window_and_the_mirrored_picture(renderer: pl
     # Radiance in matter is n^2 times as large: a picture of 1 in a sky of 1 is n^2 everywhere.
     frame = drawn(renderer, camera, picture=np.ones((2, 2, 3), np.float32), size_m=20.0)
     np.testing.assert_allclose(frame.radiance[seen], N * N, rtol=1e-3)
+
+
+def test_rays_that_rise_under_steep_waves_do_not_end_in_the_dark(renderer: pl.Renderer) -> None:
+    camera = pl.Camera((0.1, -0.3, 1.2), (0.0, -0.05, -0.2), fov_deg=70)
+    steep = waves(0.1)
+    frame = drawn(renderer, camera, waves=steep, picture=np.ones((2, 2, 3), np.float32), absorption=(0.3, 0.3, 0.3))
+    assert frame.radiance[np.isfinite(frame.depth)].min() > 0.02
 
 
 def test_the_factor_from_below_undoes_the_one_from_above(renderer: pl.Renderer) -> None:

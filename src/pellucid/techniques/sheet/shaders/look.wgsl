@@ -12,6 +12,7 @@ struct SheetLook {
     inward: vec3f,     // unit direction of the sheet's own, towards the picture
     outward: vec3f,    // and towards the surroundings
     share: f32,        // of the picture in what is seen, the rest is of the surroundings
+    way: f32,          // through matter
 }
 
 // Direction of the ray of the camera through a point
@@ -23,7 +24,7 @@ fn sheet_view(p_os: vec3f) -> vec3f {
 }
 
 // From above, the refracted ray goes to the picture and the mirrored one to the surroundings; from below the mirrored
-// one goes to the picture
+// one goes to the picture. One that rises, at a steep wave, never comes there: then the surroundings are seen alone
 fn sheet_look(p: vec3f, normal: vec3f, direction: vec3f, below: bool, exact: bool) -> SheetLook {
     let n = sheet_facing(select(normal, -normal, below), direction);
     let n_i = select(sheet.n_outside, sheet.n_inside, below);
@@ -37,5 +38,15 @@ fn sheet_look(p: vec3f, normal: vec3f, direction: vec3f, below: bool, exact: boo
     let mirror = select(1.0, mix(sheet.blend, fresnel, sheet.fresnel), bent.valid);
     let inward = select(bent.direction, mirrored, below);
     let outward = select(mirrored, bent.direction, below);
-    return SheetLook(sheet_hit(p, inward, sheet.depth), inward, outward, select(1.0 - mirror, mirror, below));
+    let share = select(0.0, select(1.0 - mirror, mirror, below), inward.y < -SHEET_LEAST_FALL);
+    let hit = sheet_hit(p, inward, sheet.depth);
+    return SheetLook(hit, inward, outward, share, min(hit.path, sheet_side(p.xz, inward.xz)));
+}
+
+// Way to where a ray leaves the matter sideways: the border that it then sees is that of a basin
+fn sheet_side(from_xz: vec2f, direction_xz: vec2f) -> f32 {
+    let high = sheet.extents_low + sheet.extents_size;
+    let to_side = select(sheet.extents_low, high, direction_xz > vec2f(0.0)) - from_xz;
+    let t = abs(to_side) / max(abs(direction_xz), vec2f(1e-9));
+    return min(t.x, t.y);
 }

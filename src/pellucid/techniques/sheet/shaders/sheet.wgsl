@@ -15,8 +15,8 @@ fn fs_main(in: SheetVarying, @builtin(front_facing) front: bool) -> @location(0)
     let n = normalize(in.n_os);
     var look: SheetLook;
     if SHEET_PER_VERTEX {
-        let hit = SheetHit(in.seen_xz, in.share_path.y);
-        look = SheetLook(hit, vec3f(0.0, -1.0, 0.0), normalize(in.outward), in.share_path.x);
+        let hit = SheetHit(in.seen_xz, in.share_way.y);
+        look = SheetLook(hit, vec3f(0.0, -1.0, 0.0), normalize(in.outward), in.share_way.x, in.share_way.y);
     } else {
         look = sheet_look(in.p_os, n, direction, !front, SHEET_EXACT);
     }
@@ -71,17 +71,17 @@ fn sheet_seen(p: vec3f, look: SheetLook, uv: vec2f, lod: f32, sphere_uv: vec2f, 
 }
 
 fn sheet_along(p_ws: vec3f, look: SheetLook, uv: vec2f, lod: f32, sphere_uv: vec2f, outside: bool) -> vec3f {
-    var path_m = sheet.scale * look.hit.path;
+    var way_m = sheet.scale * look.way;
     let direction_ws = sheet_to_world(select(look.inward, look.outward, outside));
     var radiance = vec3f(0.0);
     var met = false;
     if SHEET_MEETS_BELOW || SHEET_MEETS_OUTSIDE {
         let meets = select(SHEET_MEETS_BELOW, SHEET_MEETS_OUTSIDE, outside);
-        let hit = trace_opaque(p_ws, direction_ws, select(0.0, select(path_m, 1e30, outside), meets));
+        let hit = trace_opaque(p_ws, direction_ws, select(0.0, select(sheet.scale * look.hit.path, 1e30, outside), meets));
         met = hit.valid;
         if met {
             radiance = shade_hit(hit, p_ws, direction_ws);
-            path_m = hit.t;
+            way_m = hit.t;
         }
     }
     if !met && outside {
@@ -94,5 +94,5 @@ fn sheet_along(p_ws: vec3f, look: SheetLook, uv: vec2f, lod: f32, sphere_uv: vec
     if !met && !outside {
         radiance = sheet_picture_radiance(uv, lod, look.hit.xz);
     }
-    return radiance * select(exp(-sheet.absorption * path_m), vec3f(1.0), outside);
+    return radiance * select(exp(-sheet.absorption * way_m), vec3f(1.0), outside);
 }

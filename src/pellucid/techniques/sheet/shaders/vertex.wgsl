@@ -11,7 +11,7 @@ struct SheetVarying {
     @location(1) n_os: vec3f,
     @location(2) seen_xz: vec2f,
     @location(3) seen_uv: vec2f,
-    @location(4) share_path: vec2f,
+    @location(4) share_way: vec2f,
     @location(5) outward: vec3f,
     @location(6) sphere_uv: vec2f,
 }
@@ -27,7 +27,7 @@ fn vs_main(@builtin(vertex_index) vertex: u32) -> SheetVarying {
         let look = sheet_look(p, n, direction, dot(direction, n) > 0.0, SHEET_EXACT);
         out.seen_xz = look.hit.xz;
         out.seen_uv = sheet_uv(look.hit.xz, sheet.limits_low, sheet.limits_size);
-        out.share_path = vec2f(look.share, look.hit.path);
+        out.share_way = vec2f(look.share, look.way);
         out.outward = look.outward;
         out.sphere_uv = sheet_sphere_uv(look.outward);
     }
