@@ -1,5 +1,6 @@
 // Radiance that the surface of water sends to a viewer on either side of it.
 //!import optics/fresnel
+//!import optics/rough_water
 //!import optics/snell
 //!import techniques/water/shaders/dilution
 //!import techniques/water/shaders/foam
@@ -19,8 +20,12 @@ const WATER_GRAZING = 1e-4;  // least cosine between normal and view
 // through one place.
 fn interface_radiance(hit: WaterHit, meets: bool, p_ws: vec3f, direction_ws: vec3f) -> vec3f {
     let from_within = hit.kind == WATER_BELOW;
-    let at = wave_point(p_ws.xz, footprint_m(p_ws));
-    let outward = select(wave_normal(at.slope), hit.normal, hit.kind == WATER_SIDE);
+    let footprint = footprint_m(p_ws) * inverseSqrt(max(abs(direction_ws.y), 1e-3));
+    let at = wave_point(p_ws.xz, footprint);
+    // Of waves that a pixel hides those are seen that lean towards the viewer.
+    let towards = select(-direction_ws, direction_ws, from_within);
+    let up = wave_normal(visible_slope(towards, at.slope, at.variance));
+    let outward = select(up, hit.normal, hit.kind == WATER_SIDE);
     let n_ws = water_towards(select(outward, -outward, from_within), direction_ws);
     let cos_i = -dot(n_ws, direction_ws);
     let refracted_rays = select(1u, 3u, WATER_DISPERSION);
@@ -51,7 +56,8 @@ fn interface_radiance(hit: WaterHit, meets: bool, p_ws: vec3f, direction_ws: vec
         }
     }
     if meets {
-        radiance += water_glitter(p_ws, n_ws, -direction_ws, at.variance);
+        let glints = water_glitter(p_ws, at, -direction_ws, from_within);
+        radiance += select(glints, vec3f(0.0), hit.kind == WATER_SIDE);
         if WATER_FOAM {
             let cover = foam_cover(p_ws.xz, at.fold, footprint_m(p_ws));
             radiance = mix(radiance, foam_radiance(p_ws, wave_normal(at.slope), from_within), cover);

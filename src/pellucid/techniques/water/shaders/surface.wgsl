@@ -31,10 +31,6 @@ fn meet_water_from(origin_ws: vec3f, direction_ws: vec3f, start: f32, end: f32, 
     return WaterMeeting(found, found >= 0.0, p_ws, wave_normal(at.slope), at.variance, at.fold);
 }
 
-fn wave_normal(slope: vec2f) -> vec3f {
-    return normalize(vec3f(-slope.x, 1.0, -slope.y));
-}
-
 // Way to the first crossing, or -1. Steps are as long as the steepest slope of the waves allows, so that no crest is
 // passed but one that stands out by less than half a pixel. A ray that starts in the surface itself takes a step first.
 // One that goes on to where no wave is has crossed the surface, whatever rounding makes of that.

@@ -64,3 +64,7 @@ fn wave_possible(variance: vec3f) -> vec3f {
     let bound = sqrt(own.x * own.y);
     return vec3f(own, clamp(variance.z, -bound, bound));
 }
+
+fn wave_normal(slope: vec2f) -> vec3f {
+    return normalize(vec3f(-slope.x, 1.0, -slope.y));
+}
