@@ -34,7 +34,8 @@ def main(
     film: bool = FILM,
 ) -> list[Path]:
     # Heights that move: the same time always gives the same drops, so frames may be drawn in any order.
-    water = Drops((384, 512), CELL_M, seed=2, initial=600, rain_m_per_s=2e-5, volumes_ul=(0.1, 12.0))
+    # More friction than water has on glass, so that drops can be followed.
+    water = Drops((384, 512), CELL_M, seed=2, initial=600, rain_m_per_s=2e-5, volumes_ul=(0.1, 12.0), drag_pa_s=0.6)
     pane = pl.ReliefSurface.plane(
         water.tile_m,
         pl.ReliefLayer(0.0, colors=sign(), roughness=0.25),

@@ -12,6 +12,7 @@ from pellucid.scene import Environment, ReliefLayer, ReliefQuality, Scene
 from . import stage
 from .picture import Picture
 from .relief import from_afar, strips
+from .relief_layers import cabochon
 
 TILE_M = 0.3
 
@@ -71,6 +72,17 @@ def shares() -> Scene:
     return Scene(from_afar(10.0 * TILE_M, 28.0, 1.5 * TILE_M), cloudy(), [], path, tone_mapping="linear")
 
 
+def lamps() -> Scene:
+    """Glass domes that mirror a lamp: its reflection alone, with all light, and ten times as bright."""
+    ground = ReliefLayer(0.0002 * stage.noise((256, 256), (4.0, 4.0), 8), colors=(0.30, 0.18, 0.10), roughness=0.7)
+    dome = ReliefLayer(cabochon(0.42, 0.02), roughness=0.25)
+    quality = ReliefQuality(reflection="search", environment="map")
+    looks: list[dict[str, Any]] = [{"quality": quality.replace(show="lamps")}, {}, {"specular_factor": 10.0}]
+    path = strips(looks, 0.1, 1.2, 0.2, solid=ground, translucent=dome, medium=1.62, tile_m=0.1, quality=quality)
+    return Scene(from_afar(1.0, 36.0, 0.235), cloudy(), [stage.key_light(2.0)], path, exposure=0.8,
+                 tone_mapping="khronos")  # fmt: skip
+
+
 PICTURES = (
     Picture(
         "relief-ways",
@@ -102,6 +114,14 @@ PICTURES = (
         "Waves of water on the left, of diamond on the right. Blue is what they let through, red what they mirror: "
         "more on the slopes that are seen at a grazing angle, and everywhere more on diamond.",
         shares,
+        2,
+    ),
+    Picture(
+        "relief-lamps",
+        "A lamp in glass",
+        "Domes of glass. On the left nothing but the soft bright spot of a lamp that each mirrors, in the middle the "
+        "spot with all other light, on the right the same with a spot ten times as bright.",
+        lamps,
         2,
     ),
 )
