@@ -9,12 +9,14 @@ import numpy as np
 import pytest
 
 import pellucid as pl
+from pellucid.fields.waves import Sine
 from pellucid.gpu import Device
 from pellucid.optics.snell import refract
 from pellucid.scene.water_quality import WaterQuality
 from pellucid.surroundings import Query, Surroundings
 from pellucid.surroundings.camera import view_of
 from pellucid.techniques.water.cameras import Basin, refraction_camera, visible_surface
+from pellucid.techniques.water.passes import WaterTechnique
 from pellucid.techniques.water.picture_query import SOMETHING, UNKNOWN, PictureQuery, unprojected
 from pellucid.techniques.water.reference_pictures import first_triangle, iterate
 from pellucid.techniques.water.views import SurfacePictures
@@ -184,3 +186,40 @@ def test_places_and_points_are_inverse_to_each_other() -> None:
         clip = np.c_[unprojected(view, uv, depth), np.ones(2)] @ (view.projection @ view.view_from_world).T
         assert np.allclose(0.5 + clip[:, :2] / clip[:, 3:] * (0.5, -0.5), uv)
         assert np.allclose(clip[:, 2] / clip[:, 3], depth)
+
+
+@pytest.fixture(scope="module")
+def renderer(device: Device) -> Any:
+    from pellucid.renderer import Renderer
+
+    return Renderer(device)
+
+
+def pond(height: float, technique: str) -> pl.Scene:
+    ball = pl.Mesh.sphere(0.5, position=(0.3, 0.2, 0.0), base_color=(0.8, 0.2, 0.1))
+    waves = Sine(wavelength_m=2.0, amplitude_m=0.02, tile_m=8.0, shape=(64, 64))
+    quality = WaterQuality(caustics="none", texture_size=256)
+    water = pl.Water(extent_m=10.0, waves=waves, technique=technique, quality=quality)
+    camera = pl.Camera((0.0, height, 4.5), (0.0, 0.2 * height, 0.0), fov_deg=50.0)
+    return pl.Scene(camera=camera, environment=pl.Environment.studio(), objects=[bottom("hills"), ball, water])
+
+
+@pytest.mark.parametrize("height", [2.0, 0.01, -0.8])
+def test_what_water_covers_is_not_drawn_and_no_pixel_shows_it(
+    renderer: Any, height: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Bit for bit, from above, within the waves, and below."""
+    frame = renderer.render(pond(height, "fast"), SIZE)
+    box = renderer._techniques[pl.Water].hides(renderer.surroundings.view)
+    assert (box is None) == (height < 0.02)
+    monkeypatch.setattr(WaterTechnique, "hides", lambda self, view: None)
+    whole = renderer.render(pond(height, "fast"), SIZE)
+    assert np.array_equal(frame.radiance, whole.radiance) and np.array_equal(frame.depth, whole.depth)
+
+
+@pytest.mark.parametrize("height", [2.0, -0.8])
+def test_pictures_show_what_rays_see(renderer: Any, height: float) -> None:
+    """The whole image, where pictures stand for rays: "fast" is "best" but for a few pixels."""
+    best, fast = (renderer.render(pond(height, technique), SIZE).radiance for technique in ("best", "fast"))
+    error = np.abs(fast - best).max(axis=-1) / best.mean()
+    assert np.median(error) < 0.005 and (error > 0.1).mean() < 0.03

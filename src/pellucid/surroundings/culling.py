@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 if TYPE_CHECKING:
     from pellucid.surroundings.geometry import Geometry
@@ -52,7 +53,10 @@ def clusters(geometry: Geometry) -> Clusters:
 
 
 def visible_ranges(
-    parts: Clusters, clip_from_world: np.ndarray, clip_plane: np.ndarray | None = None
+    parts: Clusters,
+    clip_from_world: np.ndarray,
+    clip_plane: np.ndarray | None = None,
+    hidden: tuple[ArrayLike, ArrayLike] | None = None,
 ) -> list[tuple[int, int]]:
     """(first triangle, number) of all clusters that reach into a view, neighbours joined.
 
@@ -60,6 +64,7 @@ def visible_ranges(
     ----------
     clip_from_world : (4, 4), points as columns to clip space with reversed depth, so that near is z = w.
     clip_plane : (4,), what has dot(plane, (p, 1)) < 0 is not shown; None for all.
+    hidden : lower and upper corner of a box within which nothing is shown.
     """
     m = np.asarray(clip_from_world, np.float64)
     planes = np.stack([m[3] + m[0], m[3] - m[0], m[3] + m[1], m[3] - m[1], m[3] - m[2], m[2]])
@@ -68,7 +73,11 @@ def visible_ranges(
     middle, half = 0.5 * (parts.lower + parts.upper), 0.5 * (parts.upper - parts.lower)
     farthest = middle @ planes[:, :3].T + half @ np.abs(planes[:, :3]).T + planes[:, 3]
     slack = 1e-5 * (np.abs(middle) @ np.abs(planes[:, :3]).T + np.abs(planes[:, 3]))  # the GPU has 32-bit floats
-    seen = np.flatnonzero((farthest >= -slack).all(axis=1))
+    shown = (farthest >= -slack).all(axis=1)
+    if hidden is not None:
+        low, high = hidden
+        shown &= ~((parts.lower > low) & (parts.upper < high)).all(axis=1)
+    seen = np.flatnonzero(shown)
     if not len(seen):
         return []
     apart = np.flatnonzero(parts.first[seen[1:]] != parts.last[seen[:-1]])

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 SHADERS = "surroundings/shaders"
 CLEAR = (0.0, 0.0, 0.0, 0.0)
+FARTHEST_M = 1e30
+
+Box = tuple[tuple[float, float, float], tuple[float, float, float]]  # lower and upper corner, metres
 
 
 @dataclass(frozen=True)
@@ -30,11 +33,13 @@ class Shown:
     cull_back_faces : leave out what turns its back to the camera, double-sided or not, so that no solid that is cut
         open shows its inside.
     stand_ins : show what only rays meet too.
+    hidden : leave out what lies within this box, for something else will be drawn before it; not together with `clip`.
     """
 
     clip: tuple[float, float, float, float] | None = None
     cull_back_faces: bool = False
     stand_ins: bool = False
+    hidden: Box | None = None
 
     @property
     def constants(self) -> dict[str, float]:
@@ -72,6 +77,7 @@ class SceneView:
         self._triangles: Any = None
         self._frame: Any = None
         self._clip: Any = None
+        self._box: Any = None
         self._clusters: tuple[Geometry | None, Clusters | None] = (None, None)
 
     def draw(
@@ -104,6 +110,10 @@ class SceneView:
         if shown.clip is not None:
             plane = np.array(shown.clip, np.float32)
             bindings["clip_plane"] = self._clip = self._written(self._clip, plane, "clip plane")
+        elif shown.hidden is not None:
+            corners = np.zeros((2, 4), np.float32)
+            corners[:, :3] = np.clip(shown.hidden, -FARTHEST_M, FARTHEST_M)
+            bindings["hidden_box"] = self._box = self._written(self._box, corners, "hidden box")
         triangles = self._triangle_target(size)
         self._visibility(shown).run(
             encoder,
@@ -148,10 +158,12 @@ class SceneView:
             parts = clusters(surroundings.geometry)
             self._clusters = surroundings.geometry, parts
         plane = None if shown.clip is None else np.array(shown.clip)
-        return [(3 * a, 3 * n) for a, n in visible_ranges(parts, clip_from_world, plane)]
+        ranges = visible_ranges(parts, clip_from_world, plane, shown.hidden)
+        return [(3 * a, 3 * n) for a, n in ranges]
 
     def _visibility(self, shown: Shown) -> RenderPass:
-        module = "visibility" if shown.clip is None else "visibility_clipped"
+        whole = "visibility" if shown.hidden is None else "visibility_hidden"
+        module = whole if shown.clip is None else "visibility_clipped"
         return self._pass(module, shown.constants, targets=("r32uint",), depth_compare="greater", depth_write=True)
 
     def _shading(self, constants: dict[str, float]) -> RenderPass:

@@ -8,7 +8,7 @@ import numpy as np
 
 from pellucid.gpu.kernel import RenderPass
 from pellucid.gpu.targets import DEPTH_FORMAT
-from pellucid.surroundings.views import SceneView
+from pellucid.surroundings.views import Box, SceneView, Shown
 
 if TYPE_CHECKING:
     from pellucid.gpu import Device
@@ -72,6 +72,7 @@ class Opaque:
         depth: Any,
         surroundings: Surroundings,
         timer: PassTimer | None = None,
+        hidden: Box | None = None,
     ) -> None:
         """Clear both targets and draw every mesh.
 
@@ -79,5 +80,6 @@ class Opaque:
         ----------
         color : view of an rgba32float target of the surroundings' size, receives linear radiance; 0 where nothing is.
         depth : view of a depth32float target, receives reversed depth; 0 where nothing is.
+        hidden : nothing within this box is drawn, for another technique covers it from all sides.
         """
-        self._view.draw(encoder, color, depth, surroundings, timer=timer)
+        self._view.draw(encoder, color, depth, surroundings, Shown(hidden=hidden), timer=timer)

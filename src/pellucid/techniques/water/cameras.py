@@ -150,6 +150,8 @@ def pictures(view: View, basin: Basin, mode: str, field_of_view: float) -> tuple
         the camera, or as 60 degrees.
     """
     within = bool(view.position[1] < basin.level_m)
+    if within and not holds(basin, view.position):
+        return widened(view, field_of_view), None  # through an open border
     points, ways = visible_surface(view, basin)
     if not len(points):
         return None, None
@@ -164,6 +166,12 @@ def pictures(view: View, basin: Basin, mode: str, field_of_view: float) -> tuple
     if within:
         return fitted(mirrored, below, widest), fitted(across, above, widest) if len(above) else None
     return fitted(across, below, widest), fitted(mirrored, above, widest)
+
+
+def holds(basin: Basin, point: Array) -> bool:
+    """Whether a point (3,) lies above or below the rectangle."""
+    (x0, z0), (x1, z1) = basin.low, basin.high
+    return bool(x0 <= point[0] <= x1 and z0 <= point[2] <= z1)
 
 
 def visible_surface(view: View, basin: Basin) -> tuple[Array, Array]:

@@ -24,13 +24,15 @@ from pellucid.scene.water_quality import (
 from pellucid.techniques.water.caustics import WaterLight
 from pellucid.techniques.water.layouts import WaterParams, WaterViews
 from pellucid.techniques.water.prepare import WaveMaps, parameters, same_surfaces, surfaces_of, wave_maps
-from pellucid.techniques.water.views import SurfacePictures, needs_pictures
+from pellucid.techniques.water.views import SurfacePictures, hidden_box, needs_pictures
 from pellucid.techniques.water.wave_moments import moment_levels
 
 if TYPE_CHECKING:
     from pellucid.scene import Camera
     from pellucid.scene.water import Water
     from pellucid.surroundings import Surroundings
+    from pellucid.surroundings.camera import View
+    from pellucid.surroundings.views import Box
 
 HIT_FORMAT = "rgba32float"
 WAVE_NAMES = ("wave_map", "wave_sampler", "wave_moments", "wave_texture", "moments_texture")
@@ -120,6 +122,11 @@ class WaterTechnique:
     def illuminate(self, lights: Sequence[Any], surroundings: Surroundings) -> None:
         """Light below the surface: maps of what comes through it, kept until something of that moves."""
         self._light.update(self.bodies, lights, surroundings)
+
+    def hides(self, view: View) -> Box | None:
+        """The largest box whose every point lies below a surface that a view will see before it; None for none."""
+        boxes = [hidden_box(body.item, body.waves.limits_m, view) for body in self.bodies]
+        return max((box for box in boxes if box is not None), key=_breadth, default=None)
 
     def draw(
         self, encoder: Any, targets: Targets, camera: Camera, surroundings: Surroundings, timer: Any = None
@@ -221,6 +228,11 @@ class WaterTechnique:
             usage = ("sample", "render", "copy")
             self._targets[name] = kept = self.device.texture(size=size, format=format, usage=usage, label=name)
         return kept
+
+
+def _breadth(box: Box) -> float:
+    low, high = box
+    return (high[0] - low[0]) * (high[2] - low[2])
 
 
 def _distance(item: Water, camera: Camera) -> float:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT
-from pellucid.surroundings.views import SceneView, Shown, above, below
+from pellucid.surroundings.views import Box, SceneView, Shown, above, below
 from pellucid.techniques.water.cameras import Basin, pictures
 from pellucid.techniques.water.layouts import WaterViews
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 NAMES = ("picture_colors", "picture_depths")
 LABELS = ("water picture below", "water picture above")
 CLIP_MARGIN_M = 0.01  # of what both pictures have in common round the surface [mihalik2008, 5.1, 5.2]
+HIDDEN_MARGIN_M = 1e-4  # so that nothing that touches the surface is lost to rounding
 VISIBILITY = 0.01  # share of light that comes from the farthest that is worth a place in a picture
 
 
@@ -121,6 +122,23 @@ def wanted_pictures(quality: WaterQuality, view: View | None, level_m: float) ->
     may_look_up = view is None or bool(view.position[1] < level_m)
     both = may_look_up and quality.underside == "mihalik"
     return both or quality.refraction in ("march", "iteration"), both or quality.reflection in ("march", "point")
+
+
+def hidden_box(item: Water, limits_m: tuple[float, float], view: View) -> Box | None:
+    """Box below the lowest wave, which a camera outside of the water sees through the surface or not at all.
+
+    Parameters
+    ----------
+    limits_m : lowest and highest wave over the level. view : the camera.
+    """
+    (x0, z0), (x1, z1) = item.bounds_m
+    x, y, z = view.position
+    over = y > item.level + limits_m[1] + view.near_m
+    aside = x < x0 - view.near_m or x > x1 + view.near_m or z < z0 - view.near_m or z > z1 + view.near_m
+    if view.is_orthographic or not (over or aside):
+        return None
+    top = item.level + limits_m[0] - HIDDEN_MARGIN_M
+    return (x0, -np.inf, z0), (x1, top, z1)
 
 
 def lowest_and_highest(surroundings: Surroundings) -> tuple[float, float]:
