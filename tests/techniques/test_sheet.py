@@ -450,6 +450,8 @@ def test_several_sheets_stand_in_one_scene(renderer: pl.Renderer) -> None:
         for x, order in ((-0.6, (0, 1, 2)), (0.6, (2, 1, 0)))
     ]
     above = pl.Camera((0, 3, 0), up=(0, 0, -1), orthographic_height_m=2.0)
+    renderer.render(pl.Scene(above, ONE, objects=[sheets[0], sheets[0]]), (32, 24))
+    renderer.render(pl.Scene(above, ONE, objects=[sheets[1], sheets[0], sheets[0]]), (32, 24))
     found = renderer.render(pl.Scene(above, ONE, objects=sheets), (32, 24)).radiance
     np.testing.assert_allclose(found[12, 8], (1.0, 0.0, 0.0), atol=1e-3)
     np.testing.assert_allclose(found[12, 24], (0.0, 0.0, 1.0), atol=1e-3)

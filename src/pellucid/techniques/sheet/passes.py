@@ -28,7 +28,7 @@ MODULE = "techniques/sheet/shaders/sheet"
 MOST_TRIED = 65536  # vertices whose deviation is looked at
 
 
-@dataclass
+@dataclass(eq=False)
 class Body:
     """A sheet on the device.
 
