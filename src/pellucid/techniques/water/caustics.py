@@ -19,6 +19,7 @@ from pellucid.scene import DirectionalLight
 from pellucid.surroundings.layouts import MAX_WATER_LIGHTS
 from pellucid.surroundings.submersion import DEPTH_FORMAT, WaterRegion, refracted_slope
 from pellucid.techniques.water.layouts import CausticBeam, CausticParams
+from pellucid.techniques.water.photons import Tracer
 
 if TYPE_CHECKING:
     from pellucid.gpu import Device
@@ -106,21 +107,37 @@ class WaterLight:
             for k, (body, region) in enumerate(zip(bodies, regions, strict=True))
             for j, lamp in enumerate(lamps or [None])
         ]
-        seen = [lamp.params.tobytes() for _, lamp in records], [region for region in regions]
-        drawn = (surroundings, surroundings.shadow_version, *seen)
-        lit = ([(b.version, b.time_s, id(b.item.waves), _choices(b.quality)) for b in bodies], seen[0])
+        seen = [lamp.params.tobytes() for _, lamp in records]
+        places = [(region.level_m, region.low_m, region.high_m, region.limits_m) for region in regions]
+        drawn = (surroundings, surroundings.shadow_version, seen, places)
+        lit = [(b.version, b.time_s, b.item.waves, _choices(b.quality)) for b in bodies]
         encoder = self.device.wgpu.create_command_encoder()
         if anew or drawn != self._drawn:
             for body, lamp in records:
                 self._draw_depth(encoder, body, lamp, surroundings)
             self.depth_runs += 1
             self._drawn, self._lit = drawn, None
-        if lit != self._lit:
+        again = lit != self._lit
+        if again:
             for body, lamp in records:
                 self._follow(encoder, body, lamp, surroundings, dark=not lamps)
             self.photon_runs += 1
             self._lit = lit
         self.device.wgpu.queue.submit([encoder.finish()])
+        for body, lamp in records if again and lamps else []:
+            if body.quality.caustics == "cpu":
+                self.device.write_texture(
+                    surroundings.submersion.light_map,
+                    self.tracer(body, lamp, surroundings).light_map(),
+                    layer=int(lamp.params["layer"]),
+                )
+
+    def tracer(self, body: Any, lamp: Lamp, surroundings: Surroundings) -> Tracer:
+        """What follows the photons of a lamp through the surface of a body on the CPU."""
+        layer, around = int(lamp.params["layer"]), surroundings.submersion
+        below, above = (self.device.read_texture(t, layer)[..., 0] for t in (around.depth_map, self._above))
+        iteration = body.quality.caustic_intersection == "iteration"
+        return Tracer(lamp.params, body.params, body.waves, below, above, around.light_map.width, iteration)
 
     def _draw_depth(self, encoder: Any, body: Any, lamp: Lamp, surroundings: Surroundings) -> None:
         key = "caustic_depth"
@@ -156,6 +173,7 @@ class WaterLight:
         iteration = {"CAUSTIC_ITERATION": float(body.quality.caustic_intersection == "iteration")}
         encoder.clear_buffer(self._sums)
         if not dark:
+            # Beams in the water are made of the device's photons, whoever sums those of the map.
             self._kernel("caustic_refract", iteration).run(groups, bound, encoder)
             self._kernel("caustic_splat").run(groups, bound, encoder)
         self._kernel("caustic_resolve").run((*groups[:2], 1), bound, encoder)

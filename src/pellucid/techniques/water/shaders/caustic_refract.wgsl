@@ -5,7 +5,7 @@
 //!import techniques/water/shaders/caustic_cells
 //!import techniques/water/shaders/caustic_iteration
 //!import techniques/water/shaders/caustic_march
-//!import techniques/water/shaders/waves
+//!import techniques/water/shaders/caustic_wave
 
 override CAUSTIC_ITERATION: bool = false;
 
@@ -19,11 +19,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 // What a level surface receives counts as 1: (l.n) / n.y of light on a slope, over l.y there
 fn caustic_beam(cell: vec2u, channel: u32) -> CausticBeam {
     let xz = caustic_place(vec2f(cell) + 0.5);
-    var at = wave_point(xz, 0.0);
-    at.slope *= caustic.focus;
-    at.height *= caustic.focus;
-    let n_ws = normalize(vec3f(-at.slope.x, 1.0, -at.slope.y));
-    let origin = vec3f(xz.x, water.level + at.height, xz.y);
+    let wave = caustic.focus * caustic_wave(xz);
+    let n_ws = normalize(vec3f(-wave.y, 1.0, -wave.z));
+    let origin = vec3f(xz.x, water.level + wave.x, xz.y);
     let facing = dot(n_ws, caustic.to_light);
     let lost = caustic.loss * fresnel_dielectric(facing, 1.0, caustic.index[channel]);
     let flux = max(facing, 0.0) / (n_ws.y * caustic.to_light.y) * (1.0 - lost) * caustic_lit(origin);

@@ -4,7 +4,7 @@
 //!import techniques/water/shaders/caustic_cells
 
 const SPREAD_WIDEST = 6.0;     // texels
-const SPREAD_SHARPEST = 0.05;  // texels, of the picture of a lamp
+const SPREAD_SHARPEST = 0.004;  // texels, so that a trapezoid has sides
 const SPREAD_TEXELS = 10.0;
 
 // A trapezoid over the middles of texels, and those that it touches
