@@ -197,3 +197,19 @@ def test_without_silhouettes_a_sphere_keeps_the_outline_of_its_hull(renderer: pl
     pixel = (1.3 / 48) ** 2
     assert covered[0] * pixel == pytest.approx(np.pi * 0.45**2, rel=0.03)
     assert covered[1] * pixel == pytest.approx(np.pi * 0.56**2, rel=0.03)
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0, 0.0), (0.5, 0.3, 0.0), (0.0, 0.4, 1.4), (5.0, 0.0, 0.0)])
+def test_pixels_beside_a_surface_are_left_out_and_no_others(
+    renderer: pl.Renderer, monkeypatch: pytest.MonkeyPatch, place: tuple[float, float, float]
+) -> None:
+    layer = pl.ReliefLayer(0.05 * np.random.default_rng(3).random((16, 16)))
+    item = pl.ReliefSurface.sphere(0.25, layer, position=place)
+    for camera in (pl.Camera(position=(0, 0.4, 1.5)), pl.Camera(position=(0, 0.4, 1.5), orthographic_height_m=1.0)):
+        scene = pl.Scene(camera, SKY, objects=[item])
+        frame = renderer.render(scene, size=(40, 30))
+        with monkeypatch.context() as full:
+            full.setattr("pellucid.techniques.relief.passes.rectangle", lambda *given: (0, 0, 40, 30))
+            whole = renderer.render(scene, size=(40, 30))
+        np.testing.assert_array_equal(frame.radiance, whole.radiance)
+        np.testing.assert_array_equal(frame.depth, whole.depth)

@@ -94,7 +94,7 @@ class Surroundings:
     def shading_constants(self) -> dict[str, float]:
         """Override constants of every shader that shades meshes; they tell kinds of lamps, not where one is."""
         own = {"CAUSTICS": float(self.caustics.active), "SUBMERGED": float(self.submersion.active)}
-        return {**own, **self._lamp_kinds}
+        return {**own, "LAMPS_OCCLUDED": float(self.triangle_count > 0), **self._lamp_kinds}
 
     @property
     def frame(self) -> np.ndarray:

@@ -5,6 +5,7 @@
 // Which lamps there are. A driver that executes every branch spares what no lamp of the scene takes: a ray a sample.
 override LAMPS_FAR: bool = true;
 override LAMPS_NEAR: bool = true;
+override LAMPS_OCCLUDED: bool = true;  // whether a mesh can stand before those nearby
 
 const LIGHT_DIRECTIONAL = 0u;
 const LIGHT_POINT = 1u;
@@ -48,10 +49,7 @@ fn sample_directional_light(light: u32, p_ws: vec3f, n_ws: vec3f) -> LightSample
 // cos(theta) area / distance^2 / samples. One ray serves both: a software driver would send both.
 fn sample_near_light(light: u32, index: u32, p_ws: vec3f, n_ws: vec3f) -> LightSample {
     let is_area = lights[light].kind == LIGHT_AREA;
-    let cell = vec2f(f32(index % AREA_STRATA), f32(index / AREA_STRATA));
-    let st = (cell + light_jitter(p_ws, index + 31u * light)) / f32(AREA_STRATA) - 0.5;
-    let aside = st.x * lights[light].edge_u + st.y * lights[light].edge_v;
-    let to_light = lights[light].position + select(vec3f(0.0), aside, is_area) - p_ws;
+    let to_light = way_to_near_light(light, index, p_ws);
     let d2 = max(dot(to_light, to_light), 1e-12);
     let direction = to_light * inverseSqrt(d2);
     let cosine = -dot(direction, lights[light].direction);
@@ -61,11 +59,25 @@ fn sample_near_light(light: u32, index: u32, p_ws: vec3f, n_ws: vec3f) -> LightS
     return LightSample(direction, lights[light].power * select(0.0, strength, seen));
 }
 
+// Metres to a point, or to one of a stratum
+fn way_to_near_light(light: u32, index: u32, p_ws: vec3f) -> vec3f {
+    let cell = vec2f(f32(index % AREA_STRATA), f32(index / AREA_STRATA));
+    let st = (cell + light_jitter(p_ws, index + 31u * light)) / f32(AREA_STRATA) - 0.5;
+    let aside = st.x * lights[light].edge_u + st.y * lights[light].edge_v;
+    return lights[light].position + select(vec3f(0.0), aside, lights[light].kind == LIGHT_AREA) - p_ws;
+}
+
+// Unit direction of what sample_light would give, without a ray to it
+fn light_direction(light: u32, index: u32, p_ws: vec3f) -> vec3f {
+    let far = LAMPS_FAR && (!LAMPS_NEAR || lights[light].kind == LIGHT_DIRECTIONAL);
+    return select(normalize(way_to_near_light(light, index, p_ws)), lights[light].direction, far);
+}
+
 fn light_reaches(light: u32, p_ws: vec3f, n_ws: vec3f, direction: vec3f, distance_m: f32) -> bool {
     if dot(n_ws, direction) <= 0.0 {
         return false;
     }
-    if lights[light].shadow_layer < 0 {
+    if !LAMPS_OCCLUDED || lights[light].shadow_layer < 0 {
         return true;
     }
     let start = p_ws + n_ws * frame.ray_epsilon_m;

@@ -31,6 +31,12 @@ class Hull:
     clip_high: tuple[float, float]
 
     @cached_property
+    def box(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper corner (3,) of the mesh, metres."""
+        position = self.vertices["position"].astype(np.float64)
+        return position.min(axis=0), position.max(axis=0)
+
+    @cached_property
     def plane(self) -> dict[str, np.ndarray] | None:
         """Origin, tangent, bitangent and unit normal of the plane with one frame that the mesh lies on, (3,) metres.
 

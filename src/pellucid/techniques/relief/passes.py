@@ -28,6 +28,7 @@ from pellucid.techniques.relief.prepare import (
     maps,
     roughness_of,
 )
+from pellucid.techniques.relief.screen import rectangle
 from pellucid.techniques.relief.search_maps import search_bindings
 from pellucid.techniques.relief.stand_in import stand_in
 
@@ -200,6 +201,15 @@ class ReliefTechnique:
         for number, body in enumerate(self.bodies):
             if body.quality.environment.startswith("cube"):
                 self._look_around(encoder, number, body, surroundings, timer)
+            p = body.params
+            seen = rectangle(
+                body.hull,
+                (float(p["hull_low"]), float(p["hull_high"])),
+                (p["world_from_object"] @ surroundings.frame["clip_from_world"]).T,
+                targets.size,
+            )
+            if seen is None:
+                continue
             shared = {**self._nothing, **body.bindings, **surroundings.bindings}
             self._pass("find", body.constants).run(
                 encoder,
@@ -208,15 +218,18 @@ class ReliefTechnique:
                 clear=[(0.0, 0.0, 0.0, 0.0)],
                 bindings=shared,
                 vertices=len(body.hull.vertices),
+                scissor=seen,
                 timer=timer,
                 label="relief search",
             )
             rays = body.quality.environment == "rays" and self._meets_meshes(body, surroundings)
             constants = {**body.constants, **surroundings.shading_constants, "RELIEF_RAYS": float(rays)}
+            constants["LAMPS_OCCLUDED"] = float(self._meets_meshes(body, surroundings))
             self._pass("compose", constants).run(
                 encoder,
                 color=[targets.color_view],
                 bindings={**shared, "relief_hits": hits},
+                scissor=seen,
                 timer=timer,
                 label="relief shade",
             )

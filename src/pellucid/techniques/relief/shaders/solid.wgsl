@@ -45,8 +45,8 @@ fn relief_solid_radiance(point: ReliefPoint, view_ws: vec3f, footprint: f32, is_
     }
     let diffuse = (1.0 - specular) * color * again / GGX_PI;
     for (var light = 0u; light < light_count(); light++) {
-        let share = relief_light_share(point, light);
         var open = vec3f(0.0);
+        var direct = vec3f(0.0);
         for (var k = 0u; k < light_sample_count(light); k++) {
             let sample = sample_light(light, k, point.p_ws, select(above_ws, point.frame.N, RELIEF_CAUSTICS));
             open += sample.irradiance * max(dot(point.frame.N, sample.direction), 0.0);
@@ -57,8 +57,12 @@ fn relief_solid_radiance(point: ReliefPoint, view_ws: vec3f, footprint: f32, is_
                 // A beam is as wide as the interface cuts it.
                 let narrowed = max(dot(above_ws, sample.direction), 0.0) / max(dot(above_ws, towards), 1e-4);
                 let brdf = diffuse + specular_lobe(n_ws, view_ws, towards, n_dot_l, n_dot_v, alpha, f0);
-                radiance += brdf * sample.irradiance * (narrowed * n_dot_l) * share;
+                direct += brdf * sample.irradiance * (narrowed * n_dot_l);
             }
+        }
+        // No rays through the relief to lamps that light nothing here
+        if any(direct > vec3f(0.0)) {
+            radiance += direct * relief_light_share(point, light);
         }
         if RELIEF_CAUSTICS {
             // Gathered on the level; a slope spreads it.
