@@ -13,6 +13,7 @@ from pellucid.errors import AssetError, AssetWarning, NoAdapterError, PellucidEr
 if TYPE_CHECKING:
     from pellucid import media, optics
     from pellucid.animation import animate
+    from pellucid.fields import waves
     from pellucid.fields.volume import Region, Volume
     from pellucid.frame import Frame
     from pellucid.gpu import Device
@@ -54,6 +55,7 @@ _HOME = {
     "Irradiance": "techniques.eikonal.light", "illuminate": "session",
     "render": "session", "trace": "session", "probe": "session", "animate": "animation",
 }  # fmt: skip
+_WITHIN = {"waves": "fields.waves"}
 _MODULES = ("errors", "fields", "gpu", "io", "media", "optics", "scene")
 
 __version__ = "0.1.0"
@@ -98,6 +100,7 @@ __all__ = [
     "render",
     "save_scene",
     "trace",
+    "waves",
 ]  # fmt: skip
 
 
@@ -105,6 +108,8 @@ def __getattr__(name: str) -> Any:
     """Public names are loaded when they are first used: importing stays quick and opens nothing."""
     if name in _HOME:
         value = getattr(import_module(f"pellucid.{_HOME[name]}"), name)
+    elif name in _WITHIN:
+        value = import_module(f"pellucid.{_WITHIN[name]}")
     elif name in _MODULES:
         value = import_module(f"pellucid.{name}")
     else:

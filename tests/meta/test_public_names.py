@@ -26,7 +26,7 @@ SCENE = [
 CALLS = ["render", "animate", "trace", "probe"]
 RESULTS = ["Frame", "Rays"]
 ERRORS = ["PellucidError", "NoAdapterError", "AssetError", "SceneError", "ShaderError"]
-ROOMS = ["media", "optics"]
+ROOMS = ["media", "optics", "waves"]
 
 
 @pytest.mark.parametrize("name", [*SCENE, *CALLS, *RESULTS, *ERRORS, *ROOMS])
@@ -54,3 +54,9 @@ def test_every_error_is_a_pellucid_error(name: str) -> None:
 @pytest.mark.parametrize("name", ["from_mesh", "from_array", "from_function", "from_sdf"])
 def test_a_volume_is_made_in_these_ways(name: str) -> None:
     assert callable(getattr(pl.RefractiveVolume, name))
+
+
+@pytest.mark.parametrize("name", ["Sine", "Gerstner", "Ocean", "Ripples", "Heights", "MeshWaves", "Sum"])
+def test_water_moves_by_these_waves(name: str) -> None:
+    found = getattr(pl.waves, name)
+    assert issubclass(found, pl.waves.WaveSource) and (inspect.getdoc(found) or "").strip()

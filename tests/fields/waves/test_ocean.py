@@ -174,6 +174,24 @@ def test_all_slopes_together_are_those_that_were_measured() -> None:
     assert total[[0, 2]] == pytest.approx((3.16e-3 * 9.0, 0.003 + 1.92e-3 * 9.0))
 
 
+def test_tiles_of_a_cascade_divide_the_spectrum() -> None:
+    """Their variances add up to the integral, their slopes to what was measured, with nothing counted twice."""
+    tiles = Ocean.cascade(6.0, 20.0, (150.0, 40.0, 12.0), shape=(128, 128), choppiness=0.0)
+    layers = [layer for layer in tiles.layers if isinstance(layer, Ocean)]
+    assert [layer.longest_m for layer in layers[1:]] == [layer.shortest_m for layer in layers[:-1]]
+    assert sum(layer.variance_m2 for layer in layers) == pytest.approx(spectra.variance(6.0), rel=0.03)
+    c, s = np.cos(np.radians(20.0)), np.sin(np.radians(20.0))
+    total = np.array(tiles.short_slopes) + np.sum([layer.slope_variance for layer in layers], axis=0)
+    along, across = spectra.slope_variance(6.0)
+    assert total[[0, 2]] == pytest.approx((along * c * c + across * s * s, along * s * s + across * c * c), rel=0.02)
+    with pytest.raises(SceneError, match=r"^tiles_m: "):
+        Ocean.cascade(6.0, tiles_m=(100.0, 3.0), shape=(128, 128))
+    with pytest.raises(SceneError, match=r"^tiles_m: "):
+        Ocean.cascade(6.0, tiles_m=(100.0, 200.0), shape=(128, 128))
+    with pytest.raises(SceneError, match=r"^shortest_m: "):
+        sea(shortest_m=5.0, longest_m=4.0)
+
+
 @pytest.mark.parametrize(
     ("options", "field"),
     [({"wind_m_s": -1.0}, "wind_m_s"), ({"wind_m_s": np.nan}, "wind_m_s"), ({"wind_deg": np.inf}, "wind_deg"),

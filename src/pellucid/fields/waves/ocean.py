@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -11,6 +12,7 @@ from pellucid.errors import SceneError
 from pellucid.fields.waves import arguments, spectra
 from pellucid.fields.waves.dispersion import angular_frequency
 from pellucid.fields.waves.eulerian import grid_origins, moved_slopes
+from pellucid.fields.waves.layers import Sum
 from pellucid.fields.waves.source import Singles, WaveSource, WaveSurface, bilinear
 
 #: Heights are cut off so many standard deviations from the level; one in 10^9 is beyond.
@@ -40,6 +42,7 @@ class Ocean(WaveSource):
         all.
     amplitude : multiplies all waves.
     seed : of the phases.
+    shortest_m, longest_m : wavelengths that are left out below and from there on; see `cascade`.
     loop_s : frequencies are rounded so that all repeats after so many seconds; None for those of the waves.
     level_m : of the water at rest, metres.
 
@@ -64,6 +67,8 @@ class Ocean(WaveSource):
         choppiness: float = 1.0,
         amplitude: float = 1.0,
         seed: int = 0,
+        shortest_m: float = 0.0,
+        longest_m: float = np.inf,
         loop_s: float | None = None,
         level_m: float = 0.0,
     ) -> None:
@@ -80,9 +85,47 @@ class Ocean(WaveSource):
         if not isinstance(seed, int | np.integer) or isinstance(seed, bool) or seed < 0:
             raise SceneError("seed", f"is {seed!r}", "give a whole number, 0 or more")
         self.seed = int(seed)
+        self.shortest_m = arguments.number("shortest_m", shortest_m, low=0.0)
+        self.longest_m = arguments.depth("longest_m", longest_m)
+        if not self.shortest_m < self.longest_m:
+            raise SceneError("shortest_m", f"is {self.shortest_m:g}", f"use less than longest_m, {self.longest_m:g}")
         self.loop_s = None if loop_s is None else arguments.number("loop_s", loop_s, low=1e-3)
         self.level_m = arguments.number("level_m", level_m)
         self._prepare()
+
+    @classmethod
+    def cascade(
+        cls, wind_m_s: float = 8.0, wind_deg: float = 0.0, tiles_m: Sequence[float] = (250.0, 37.0, 5.3), **others: Any
+    ) -> Sum:
+        """A sea of several tiles that divide the spectrum between them: long waves and ripples, no repetition in sight.
+
+        Each tile has the waves that are shorter than four cells of the one before, as long as they are longer than
+        four of its own; together their pattern does not repeat where their sides have no common multiple.
+
+        Parameters
+        ----------
+        tiles_m : sides of the tiles, falling, each to hold four of its longest waves. others : those of `Ocean`; each
+            tile has a seed of its own.
+
+        Raises
+        ------
+        SceneError : tiles that do not fall, or so fast that waves between them are missing.
+        """
+        sides = arguments.numbers("tiles_m", tiles_m, low=1e-6)
+        shape = arguments.grid(others.get("shape", (256, 256)), low=8, high=LARGEST)
+        ends = [4.0 * side / min(shape) for side in sides]
+        for side, before in zip(sides[1:], ends, strict=False):
+            if not before <= 0.25 * side or not side < sides[0]:
+                said = f"are {sides.tolist()} with {shape} cells"
+                raise SceneError("tiles_m", said, f"after one with waves to {before:g} m use at least {4.0 * before:g}")
+        longest = [np.inf, *ends[:-1]]
+        shortest = [*ends[:-1], 0.0]
+        seed = others.pop("seed", 0)
+        layers = [
+            cls(wind_m_s, wind_deg, float(side), shortest_m=low, longest_m=high, seed=seed + 7919 * n, **others)
+            for n, (side, low, high) in enumerate(zip(sides, shortest, longest, strict=True))
+        ]
+        return Sum(*layers)
 
     @property
     def tile_m(self) -> tuple[float, float]:
@@ -102,22 +145,44 @@ class Ocean(WaveSource):
 
     @property
     def short_slopes(self) -> tuple[float, float, float]:
-        """Mean squares of slopes of the waves below two cells: what [cox1954] measured, without those on the grid."""
+        """Mean squares of slopes of the waves below two cells: what [cox1954] measured, without those on the grid.
+
+        None where `shortest_m` leaves shorter ones to others; with `longest_m` longer ones are taken off as well.
+        """
+        if self.shortest_m > 0.0:
+            return 0.0, 0.0, 0.0
         along, across = (self.amplitude**2 * value for value in spectra.slope_variance(self.wind_m_s))
         c, s = np.cos(np.radians(self.wind_deg)), np.sin(np.radians(self.wind_deg))
         total = along * c * c + across * s * s, along * s * s + across * c * c
-        xx, zz = (max(all_ - own, 0.0) for all_, own in zip(total, self.slope_variance[::2], strict=True))
-        xz = (along - across) * c * s - self.slope_variance[1]
+        own = [a + b for a, b in zip(self.slope_variance, self._longer_slopes(), strict=True)]
+        xx, zz = (max(every - held, 0.0) for every, held in zip(total, own[::2], strict=True))
+        xz = (along - across) * c * s - own[1]
         bound = (xx * zz) ** 0.5
         return xx, float(np.clip(xz, -bound, bound)), zz
+
+    def _longer_slopes(self) -> tuple[float, ...]:
+        """Mean squares xx, xz, zz of slopes of waves from `longest_m` on, by sums in log k and direction."""
+        if np.isinf(self.longest_m):
+            return 0.0, 0.0, 0.0
+        k = np.geomspace(1e-4 * 2.0 * np.pi / self.longest_m, 2.0 * np.pi / self.longest_m, 600)[:, None]
+        theta = np.arange(96) * (2.0 * np.pi / 96)
+        k_x, k_z = k * np.cos(theta), k * np.sin(theta)
+        density = self.amplitude**2 * spectra.vector_spectrum(k_x, k_z, *self._wind()) * k * k
+        weight = density * (2.0 * np.pi / 96) * np.log(k[1] / k[0])
+        return tuple(float((weight * a * b).sum()) for a, b in ((k_x, k_x), (k_x, k_z), (k_z, k_z)))
+
+    def _wind(self) -> tuple[Any, ...]:
+        return self.wind_m_s, self.wind_deg, self.spectrum, self.fetch_m, self.depth_m, self.spreading
 
     def _prepare(self) -> None:
         (rows, columns), (width, depth) = self.shape, self._tile
         n = np.fft.fftfreq(rows, 1.0 / rows)[:, None]
         m = np.fft.fftfreq(columns, 1.0 / columns)[None, :]
         k_x, k_z = 2.0 * np.pi * m / width, 2.0 * np.pi * n / depth
-        given = (self.wind_m_s, self.wind_deg, self.spectrum, self.fetch_m, self.depth_m, self.spreading)
-        power = self.amplitude**2 * spectra.vector_spectrum(k_x, k_z, *given) * (2.0 * np.pi) ** 2 / (width * depth)
+        power = self.amplitude**2 * spectra.vector_spectrum(k_x, k_z, *self._wind())
+        power *= (2.0 * np.pi) ** 2 / (width * depth)
+        length = 2.0 * np.pi / np.maximum(np.hypot(k_x, k_z), 1e-9)
+        power[(length < self.shortest_m) | (length >= self.longest_m)] = 0.0
         # A wave of two cells has no direction, and no slope on the grid.
         power[rows // 2], power[:, columns // 2] = 0.0, 0.0
         self.variance_m2 = float(power.sum())

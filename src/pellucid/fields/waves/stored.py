@@ -26,6 +26,7 @@ FIELDS: dict[str, tuple[str, ...]] = {
     "gerstner": (*_TRAINS, "sharpness"),
     "ocean": (
         *("wind_m_s", "wind_deg", "spectrum", "spreading", "fetch_m", "depth_m", "choppiness", "amplitude", "seed"),
+        *("shortest_m", "longest_m"),
         *("loop_s", *_GRID),
     ),
     "ripples": (
