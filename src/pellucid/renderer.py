@@ -212,7 +212,7 @@ class Renderer:
         around = self.surroundings
         self._opaque.illuminate(encoder, around, timer)
         hidden = next((t.hides(around.view) for t in self._techniques.values() if hasattr(t, "hides")), None)
-        self._opaque.draw(encoder, targets.color_view, targets.depth_view, around, timer, hidden)
+        self._opaque.draw(encoder, targets.color, targets.depth, around, timer, hidden)
         self._sky.draw(encoder, targets.color_view, targets.depth_view, around, timer)
         nearest: dict[type, float] = {}
         for item in (o for o in scene.objects if type(o) in TECHNIQUES):

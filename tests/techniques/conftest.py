@@ -36,7 +36,7 @@ def draw(device: Device) -> Draw:
         targets = color.create_view(), depth.create_view()
         encoder = device.wgpu.create_command_encoder()
         opaque.illuminate(encoder, surroundings)
-        opaque.draw(encoder, *targets, surroundings)
+        opaque.draw(encoder, color, depth, surroundings)
         sky.draw(encoder, *targets, surroundings)
         device.wgpu.queue.submit([encoder.finish()])
         radiance = device.read_texture(color)[..., :3]

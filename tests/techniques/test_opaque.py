@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import pytest
 
 from pellucid.scene import AreaLight, Camera, DirectionalLight, Environment, Mesh, PointLight, Scene
 from pellucid.surroundings import Query
+
+if TYPE_CHECKING:
+    from pellucid.gpu import Device
 
 SIZE = (160, 120)
 PERSPECTIVE = Camera((0.6, 1.1, 2.6), (0.0, 0.3, 0.0), fov_deg=45.0)
@@ -152,3 +157,19 @@ def test_a_picture_with_caustics_is_what_rays_see(draw) -> None:
     seen = query.radiance(origins, directions).reshape(radiance.shape)
     assert (~np.isclose(radiance, seen, rtol=2e-3, atol=1e-4).all(axis=-1)).sum() <= 0.003 * SIZE[0] * SIZE[1]
     assert (radiance > plain + 0.1).any() and (radiance < plain - 0.01).any()
+
+
+def test_a_kept_picture_is_that_of_a_fresh_renderer(device: Device) -> None:
+    from pellucid.renderer import Renderer
+
+    scene, renderer = still_life(PERSPECTIVE), Renderer(device)
+    kept = [renderer.render(scene, size=(48, 36)).radiance for _ in range(3)]
+    assert (kept[0] == kept[1]).all() and (kept[0] == kept[2]).all()
+    turned = scene.replace(environment=scene.environment.replace(rotation_deg=50.0))
+    moved = scene.replace(camera=PERSPECTIVE.replace(fov_deg=30.0))
+    painted = scene.replace(objects=[scene.objects[0].replace(base_color=(0.9, 0.1, 0.1)), *scene.objects[1:]])
+    for other in (turned, moved, painted, scene):
+        seen = [renderer.render(other, size=(48, 36)).radiance for _ in range(3)]
+        fresh = Renderer(device).render(other, size=(48, 36)).radiance
+        assert all((picture == fresh).all() for picture in seen)
+        assert (fresh != kept[0]).any() or other is scene

@@ -50,6 +50,7 @@ class CausticMaps:
     def __init__(self, device: Device, resources: dict[str, Any]) -> None:
         self.device = device
         self.active = False
+        self.version = 0
         self.charts: Charts | None = None
         self._resources = resources
         self._made_for: tuple[Any, ...] = ()
@@ -72,6 +73,7 @@ class CausticMaps:
         """Forget the maps: meshes are drawn as if no refractive matter were there."""
         blank = self.charts is None and "caustic_charts" in self._resources
         self.active, self.charts, self._made_for, self._landing = False, None, (), {}
+        self.version += 1
         if blank:
             return
         empty = np.zeros((1, 1, 4), np.float32)
@@ -174,6 +176,7 @@ class CausticMaps:
         for kind in KINDS:
             self._resources[f"{kind}_map"] = self._landing[f"{kind}_texture"]
         self.active = True
+        self.version += 1
 
     def landed_flux(self) -> dict[str, np.ndarray]:
         """Power (3,) since `begin`, read back: ``caustic`` and ``blocked`` on the charts, and each with ``_missed``."""

@@ -59,6 +59,7 @@ class Surroundings:
             "shadow_sampler": device.sampler("linear", "clamp", compare="less-equal"),
         }
         self._sizes: dict[str, int] = {}
+        self._version = 0
         self._geometry = geometry.gather(())
         self._layers: list[int] = []
         self._map_size = 1
@@ -95,6 +96,16 @@ class Surroundings:
         """Override constants of every shader that shades meshes; they tell kinds of lamps, not where one is."""
         own = {"CAUSTICS": float(self.caustics.active), "SUBMERGED": float(self.submersion.active)}
         return {**own, "LAMPS_OCCLUDED": float(self.triangle_count > 0), **self._lamp_kinds}
+
+    def state(self, waters: bool = True) -> tuple[Any, ...]:
+        """What pictures of the meshes depend on, but for the camera: equal to an earlier one while they are the same.
+
+        Parameters
+        ----------
+        waters : whether light in water counts.
+        """
+        own = (self, self._version, self.shadow_version, self.caustics.version)
+        return (*own, self.submersion.version) if waters else own
 
     @property
     def frame(self) -> np.ndarray:
@@ -256,6 +267,7 @@ class Surroundings:
         return not same
 
     def _store(self, name: str, records: np.ndarray) -> None:
+        self._version += 1
         buffer = self._resources.get(name)
         if buffer is not None and self._sizes[name] == records.nbytes:
             self.device.write(buffer, records)
@@ -265,6 +277,7 @@ class Surroundings:
 
     def _store_texture(self, name: str, levels: list[np.ndarray], format: str, dimension: str) -> None:
         """Levels are (layers, H, W, 4), finest first."""
+        self._version += 1
         layers, height, width = levels[0].shape[:3]
         texture = self.device.texture(
             size=(width, height),

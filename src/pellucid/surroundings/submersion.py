@@ -98,12 +98,14 @@ class Submersion:
     ----------
     active : whether there is water; then shaders are run with ``SUBMERGED`` = 1.
     light_map : texture of one layer for each water and light, rgba16float; see the top of this file.
+    version : grows whenever shading in water may change; whoever fills the maps adds to it.
     depth_map : texture of as many layers, depth32float, 0 at the highest wave and 1 at the reach of each water.
     """
 
     def __init__(self, device: Device, resources: dict[str, Any]) -> None:
         self.device = device
         self.active = False
+        self.version = 0
         self.regions: tuple[WaterRegion, ...] = ()
         self._resources = resources
         self._params = np.zeros((), SubmersionParams)
@@ -118,6 +120,10 @@ class Submersion:
         assert self._size is not None
         side, depth_side, layers = self._size
         return SubmersionParams.itemsize + layers * (8 * side**2 + 4 * depth_side**2)
+
+    def is_above(self, p_ws: np.ndarray) -> bool:
+        """Whether a point (3,) is above the highest wave of all waters, and sees what is in them through a surface."""
+        return all(p_ws[1] > region.level_m + region.limits_m[1] for region in self.regions)
 
     def layer(self, water: int, light: int) -> int:
         """Layer of the maps of a water (its place in what `set` got) and the `light`-th directional light."""
@@ -155,6 +161,7 @@ class Submersion:
             self._write(params, k, region, sky[k] if sky else SkyThroughSurface())
         if params.tobytes() != self._params.tobytes():
             self._params = params
+            self.version += 1
             self.device.write(self._resources["submersion"], params.reshape(1))
         return anew
 
@@ -178,6 +185,7 @@ class Submersion:
     def _allocate(self, side: int, depth_side: int, layers: int) -> bool:
         if self._size == (side, depth_side, layers):
             return False
+        self.version += 1
         self.light_map = self.device.texture(
             size=(side, side), format=MAP_FORMAT, layers=layers, usage=PAINTED, label="submerged light"
         )

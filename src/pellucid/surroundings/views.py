@@ -79,6 +79,8 @@ class SceneView:
         self._clip: Any = None
         self._box: Any = None
         self._clusters: tuple[Geometry | None, Clusters | None] = (None, None)
+        self._seen: tuple[Any, ...] = ()
+        self._lit: tuple[Any, ...] = ()
 
     def draw(
         self,
@@ -92,6 +94,8 @@ class SceneView:
         sky: bool = False,
         timer: PassTimer | None = None,
         label: str = "opaque",
+        kept: bool = False,
+        waters: bool = True,
     ) -> None:
         """Clear both targets and draw every mesh, and the sky behind them if it is wanted.
 
@@ -101,6 +105,8 @@ class SceneView:
         depth : view of a depth32float target, receives reversed depth; 0 where nothing is.
         shown : what is drawn.
         view, size : another camera than that of the surroundings, and the size of its targets in pixels.
+        kept : the targets still hold what this view drew last; what would be the same is not drawn again.
+        waters : light what is in water as it is there; without, as in air, where no mesh in water is seen by itself.
         """
         size = surroundings.size if size is None else size
         bindings, record = dict(surroundings.bindings), surroundings.frame
@@ -114,19 +120,28 @@ class SceneView:
             corners = np.zeros((2, 4), np.float32)
             corners[:, :3] = np.clip(shown.hidden, -FARTHEST_M, FARTHEST_M)
             bindings["hidden_box"] = self._box = self._written(self._box, corners, "hidden box")
+        seen = (*surroundings.state(waters=False), record.tobytes(), shown, size)
+        lit = (*surroundings.state(waters), seen, sky)
+        if kept and lit == self._lit:
+            return
         triangles = self._triangle_target(size)
-        self._visibility(shown).run(
-            encoder,
-            color=[triangles.create_view()],
-            depth=depth,
-            clear=[CLEAR],
-            clear_depth=0.0,
-            bindings=bindings,
-            ranges=self._ranges(surroundings, record.reshape(())["clip_from_world"].T, shown),
-            timer=timer,
-            label=f"{label} visibility",
-        )
-        self._shading(surroundings.shading_constants).run(
+        if not (kept and seen == self._seen):
+            self._visibility(shown).run(
+                encoder,
+                color=[triangles.create_view()],
+                depth=depth,
+                clear=[CLEAR],
+                clear_depth=0.0,
+                bindings=bindings,
+                ranges=self._ranges(surroundings, record.reshape(())["clip_from_world"].T, shown),
+                timer=timer,
+                label=f"{label} visibility",
+            )
+        self._seen, self._lit = seen, lit
+        constants = surroundings.shading_constants
+        # Both are made at once, so that a camera that dives waits for nothing.
+        wet, dry = self._shading(constants), self._shading({**constants, "SUBMERGED": 0.0})
+        (wet if waters else dry).run(
             encoder,
             color=[color],
             depth=depth,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellucid.gpu.kernel import RenderPass
-from pellucid.gpu.targets import DEPTH_FORMAT
+from pellucid.gpu.targets import DEPTH_FORMAT, Targets
 from pellucid.surroundings.views import Box, SceneView, Shown
 
 if TYPE_CHECKING:
@@ -37,6 +37,8 @@ class Opaque:
         self._view = SceneView(device)
         self._shadow_lights: list[Any] = []
         self._drawn: tuple[Surroundings, int] | None = None
+        self._wanted: tuple[Any, ...] = ()
+        self._kept: Targets | None = None
 
     def prepare(self, surroundings: Surroundings) -> None:
         """Upload which light each shadow map belongs to."""
@@ -74,12 +76,27 @@ class Opaque:
         timer: PassTimer | None = None,
         hidden: Box | None = None,
     ) -> None:
-        """Clear both targets and draw every mesh.
+        """Clear both targets and draw every mesh; a picture that is wanted for the second time running is kept.
 
         Parameters
         ----------
-        color : view of an rgba32float target of the surroundings' size, receives linear radiance; 0 where nothing is.
-        depth : view of a depth32float target, receives reversed depth; 0 where nothing is.
+        color : rgba32float texture of the surroundings' size, receives linear radiance; 0 where nothing is.
+        depth : depth32float texture, receives reversed depth; 0 where nothing is.
         hidden : nothing within this box is drawn, for another technique covers it from all sides.
         """
-        self._view.draw(encoder, color, depth, surroundings, Shown(hidden=hidden), timer=timer)
+        shown = Shown(hidden=hidden)
+        in_water = not surroundings.submersion.is_above(surroundings.view.position)
+        wanted = (*surroundings.state(in_water), surroundings.frame.tobytes(), shown)
+        again, self._wanted = wanted == self._wanted, wanted
+        if not again:
+            self._kept = None
+            self._view.draw(
+                encoder, color.create_view(), depth.create_view(), surroundings, shown, timer=timer, waters=in_water
+            )
+            return
+        if self._kept is None:
+            self._kept = Targets(self.device, surroundings.size)
+            kept = self._kept.color_view, self._kept.depth_view
+            self._view.draw(encoder, *kept, surroundings, shown, timer=timer, waters=in_water)
+        for source, target in ((self._kept.color, color), (self._kept.depth, depth)):
+            encoder.copy_texture_to_texture({"texture": source}, {"texture": target}, (*surroundings.size, 1))

@@ -122,6 +122,7 @@ class WaterLight:
             for body, lamp in records:
                 self._follow(encoder, body, lamp, surroundings, dark=not lamps)
             self.photon_runs += 1
+            surroundings.submersion.version += 1
             self._lit = lit
         self.device.wgpu.queue.submit([encoder.finish()])
         for body, lamp in records if again and lamps else []:

@@ -75,7 +75,7 @@ class SurfacePictures:
         waves : lowest and highest height over the level, metres, and the steepest slope.
         """
         size = (quality.texture_size, quality.texture_size)
-        self._use_size(size)
+        kept = self._use_size(size)
         (low, high), slope = waves
         reach = lowest_and_highest(surroundings)
         basin = basin_of(item, quality, slope, reach[0])
@@ -97,6 +97,8 @@ class SurfacePictures:
                     sky=True,
                     timer=timer,
                     label=LABELS[layer],
+                    kept=kept,
+                    waters=layer == 0,
                 )
 
     def read(self, layer: int) -> tuple[np.ndarray, np.ndarray]:
@@ -104,12 +106,15 @@ class SurfacePictures:
         color = self.device.read_texture(self._colors, layer=layer)[..., :3]
         return color, self.device.read_texture(self._depths, layer=layer)[..., 0]
 
-    def _use_size(self, size: tuple[int, int]) -> None:
-        if self._colors is None or (self._colors.width, self._colors.height) != size:
-            usage = ("sample", "render")
-            self._colors = self.device.texture(size=size, format=self.format, layers=2, usage=usage, label=NAMES[0])
-            self._depths = self.device.texture(size=size, format=DEPTH_FORMAT, layers=2, usage=usage, label=NAMES[1])
-            self._stacks = [t.create_view(dimension="2d-array") for t in (self._colors, self._depths)]
+    def _use_size(self, size: tuple[int, int]) -> bool:
+        """Have pictures of a size; tells whether they are those of before."""
+        if self._colors is not None and (self._colors.width, self._colors.height) == size:
+            return True
+        usage = ("sample", "render")
+        self._colors = self.device.texture(size=size, format=self.format, layers=2, usage=usage, label=NAMES[0])
+        self._depths = self.device.texture(size=size, format=DEPTH_FORMAT, layers=2, usage=usage, label=NAMES[1])
+        self._stacks = [t.create_view(dimension="2d-array") for t in (self._colors, self._depths)]
+        return False
 
 
 def needs_pictures(quality: WaterQuality) -> bool:
@@ -155,7 +160,12 @@ def basin_of(item: Water, quality: WaterQuality, slope: float, lowest_m: float) 
     sight = -np.log(VISIBILITY) / clear if clear > 0.0 else np.inf
     low, high = item.bounds_m
     bottom = max(min(lowest_m, item.level), item.level - float(sight))
-    return Basin(item.level, low, high, slope, item.matter.n_d, item.ambient_n, bottom)
+    return Basin(item.level, low, high, _in_steps(slope), item.matter.n_d, item.ambient_n, bottom)
+
+
+def _in_steps(slope: float) -> float:
+    """The next power of 2^(1/4): waves of one kind have one camera, and one picture serves while nothing else moves."""
+    return float(2.0 ** (np.ceil(4.0 * np.log2(slope)) / 4.0)) if slope > 0.0 else 0.0
 
 
 def views_record(views: tuple[View | None, View | None], reach: tuple[float, float]) -> np.ndarray:
