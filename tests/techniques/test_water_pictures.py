@@ -223,3 +223,17 @@ def test_pictures_show_what_rays_see(renderer: Any, height: float) -> None:
     best, fast = (renderer.render(pond(height, technique), SIZE).radiance for technique in ("best", "fast"))
     error = np.abs(fast - best).max(axis=-1) / best.mean()
     assert np.median(error) < 0.005 and (error > 0.1).mean() < 0.03
+
+
+def test_glow_adds_light_round_mirrored_lamps_alone(renderer: Any) -> None:
+    scene = pond(2.0, "fast").replace(lights=[pl.DirectionalLight((0.0, -0.5, 1.0), irradiance=2.0)])
+    water = scene.objects[-1]
+    glowing = water.replace(quality=water.quality.replace(glow=1.0))
+    size = (96, 72)
+    plain = renderer.render(scene, size).radiance
+    added = renderer.render(scene.replace(objects=[*scene.objects[:-1], glowing]), size).radiance - plain
+    assert added.min() >= -1e-4 and added.max() > 0.05
+    assert np.allclose(added[..., 2], 0.8 * added[..., 0], atol=1e-3)
+    assert np.abs(added[:8]).max() < 1e-3
+    columns = added[..., 0].sum(axis=0)
+    assert abs((columns * np.arange(size[0])).sum() / columns.sum() - 0.5 * (size[0] - 1)) < 6

@@ -51,6 +51,8 @@ class WaterQuality(Value):
     caustic_camera : looks along the ``"refracted"`` light or the ``"incident"`` one, as [mihalik2008, 8] does.
     caustic_intersection : how its photons find the bottom.
     shadows : meshes throw shadows below the water.
+    glow : how much lamps that are mirrored glow, 0 or more [mihalik2008, 9.3]; `Scene.glow` does that for all that is
+        bright.
     god_rays : beams in the water, from a march along each view ray.
 
     Raises
@@ -79,6 +81,7 @@ class WaterQuality(Value):
     caustic_intersection: str = "march"
     shadows: bool = True
     god_rays: bool = False
+    glow: float = 0.0
 
     @classmethod
     def of(cls, technique: str, **fields: Any) -> Self:
@@ -101,6 +104,7 @@ class WaterQuality(Value):
         store(
             self,
             field_of_view=checks.number("water_quality.field_of_view", self.field_of_view, low=1.0, high=4.0),
+            glow=checks.number("water_quality.glow", self.glow, low=0.0),
             point_distance_m=_length("point_distance_m", self.point_distance_m),
             underside_distance_m=_length("underside_distance_m", self.underside_distance_m),
             schlick_power=checks.number("water_quality.schlick_power", self.schlick_power, low=0.0, exclusive=True),
@@ -136,6 +140,7 @@ _PRESETS: dict[str, dict[str, Any]] = {
         "fresnel": "schlick",
         "color": "mihalik",
         "underside": "mihalik",
+        "glow": 1.0,
         "caustics": "cpu",
         "caustic_camera": "incident",
         "caustic_intersection": "iteration",

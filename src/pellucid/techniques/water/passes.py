@@ -22,6 +22,7 @@ from pellucid.scene.water_quality import (
     quality_of,
 )
 from pellucid.techniques.water.caustics import WaterLight
+from pellucid.techniques.water.glow import WaterGlow
 from pellucid.techniques.water.layouts import WaterParams, WaterViews
 from pellucid.techniques.water.prepare import WaveMaps, parameters, same_surfaces, surfaces_of, wave_maps
 from pellucid.techniques.water.views import SurfacePictures, hidden_box, needs_pictures
@@ -92,14 +93,15 @@ class WaterTechnique:
         self._targets: dict[str, Any] = {}
         self._nothing = _absent(device)
         self._light = WaterLight(device)
+        self._glow: WaterGlow | None = None
 
     @property
     def nbytes(self) -> int:
         """Bytes of GPU memory held."""
         screen = sum(t.width * t.height * (4 if t.format == DEPTH_FORMAT else 16) for t in self._targets.values())
-        return (
-            screen + self._light.nbytes + sum(body.waves.texels.nbytes + WaterParams.itemsize for body in self.bodies)
-        )
+        bodies = sum(body.waves.texels.nbytes + WaterParams.itemsize for body in self.bodies)
+        pictures = sum(body.pictures.nbytes for body in self.bodies if body.pictures is not None)
+        return screen + self._light.nbytes + bodies + pictures + (self._glow.nbytes if self._glow is not None else 0)
 
     def prepare(self, items: Sequence[Water], surroundings: Surroundings) -> None:
         """Make waves resident that are new, and write the parameters of every body of water."""
@@ -167,6 +169,9 @@ class WaterTechnique:
             timer=timer,
             label="water shade",
         )
+        if body.quality.glow > 0.0:
+            self._glow = self._glow or WaterGlow(self.device)
+            self._glow.draw(encoder, targets, {**bound, "water_hits": hits}, body.quality.glow, timer)
 
     def _body(self, item: Water, before: list[Body], number: int) -> Body:
         quality = quality_of(item.technique, item.quality)
