@@ -4,6 +4,7 @@
 //!import surroundings/shaders/lights
 //!import techniques/water/shaders/waves
 
+const GLITTER_STEEPEST = 0.02;  // cosine of facets so steep that there are none, whose densities overflow
 const GLITTER_LEAST = 5e-4;  // least tangent of half the angle of a lamp: a point would be seen by no pixel
 
 // Radiance towards the viewer: E F p(slope) over what is seen [ross2005; bruneton2010, sec. 5]; from within the water
@@ -17,6 +18,9 @@ fn water_glitter(p_ws: vec3f, at: WavePoint, view_ws: vec3f, from_within: bool) 
             continue;
         }
         let facet = facet_normal(view_ws, towards, n_view, water.n_outside);
+        if abs(facet.y) < GLITTER_STEEPEST * length(facet) {
+            continue;
+        }
         let moved = select(1.0, water.n_outside, from_within);
         let disc = disc_variance(towards, facet, max(lights[light].radius, GLITTER_LEAST), moved);
         let sent = glint(view_ws, towards, at.slope, at.variance + disc, n_view, water.n_outside);
