@@ -10,7 +10,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (any(id.xy >= dent.size)) { return; }
     let pool = vec2f(dent.size) * dent.cell_m;
     var away = (vec2f(id.xy) + 0.5) * dent.cell_m - 0.5 * pool - dent.centre_m;
-    if (dent.periodic != 0u) { away -= pool * round(away / pool); }
+    away -= select(vec2f(0.0), pool * round(away / pool), dent.periodic != 0u);
     let s = dot(away, away) / (dent.radius_m * dent.radius_m);
     displacement[id.y * dent.size.x + id.x] -= dent.strength_m * (dent.balance - s) * exp(-s);
 }

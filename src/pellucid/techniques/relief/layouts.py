@@ -42,7 +42,6 @@ ReliefParams = struct(
         ("n_layer", "vec3f"),  # index of the translucent layer, red, green, blue
         ("n_outside", "f32"),
         ("absorption", "vec3f"),  # 1/m
-        ("dispersion", "u32"),
         ("scattering", "f32"),  # 1/m
         ("specular_factor", "f32"),  # 0 for light as it is
         ("solid_roughness", "f32"),
@@ -53,7 +52,6 @@ ReliefParams = struct(
         ("linear_approximation", "u32"),
         ("refraction_linear", "u32"),
         ("refraction_binary", "u32"),
-        ("shadow_steps", "u32"),
         ("adapt_angle", "f32"),  # 0 or 1
         ("adapt_distance", "f32"),
         ("complexity", "f32"),

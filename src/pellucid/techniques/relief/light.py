@@ -208,6 +208,6 @@ class LightMaps:
 def _channels(params: np.ndarray) -> list[tuple[float, tuple[float, ...]]]:
     """(index, which of red, green and blue) of light that is refracted together."""
     n = params["n_layer"]
-    if not params["dispersion"]:
+    if n[0] == n[1] == n[2]:
         return [(float(n[1]), (1.0, 1.0, 1.0))]
     return [(float(n[k]), tuple(float(k == j) for j in range(3))) for k in range(3)]

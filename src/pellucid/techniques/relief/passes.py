@@ -89,6 +89,8 @@ class Body:
             "RELIEF_REFRACTION": float(REFRACTIONS.index(quality.refraction)),
             "RELIEF_PIECES": float(quality.refraction_pieces),
             "RELIEF_SHOWS": float(SHOWS.index(quality.show)),
+            "RELIEF_DISPERSION": float(self.item.dispersion and self.item.matter.is_dispersive),
+            "RELIEF_SHADOW_STEPS": float(quality.shadow_steps),
             "RELIEF_CUBE": float(quality.environment.startswith("cube")),
             "RELIEF_REFLECTION": float(REFLECTIONS.index(quality.reflection)),
             **self.light_constants,
@@ -353,7 +355,7 @@ def write_parameters(body: Body) -> None:
     p["clip_high"] = body.hull.clip_high if clips else (1e9, 1e9)
     matter = item.matter
     n = matter.n_rgb if item.dispersion else np.full(3, matter.n_d)
-    p["n_layer"], p["n_outside"], p["dispersion"] = n, item.ambient_n, item.dispersion and matter.is_dispersive
+    p["n_layer"], p["n_outside"] = n, item.ambient_n
     absorption = np.asarray(item.absorption_per_m, np.float64)
     p["absorption"] = absorption if quality.hue else absorption.mean()
     p["scattering"] = item.scattering
@@ -363,7 +365,6 @@ def write_parameters(body: Body) -> None:
     p["linear_steps"], p["binary_steps"] = quality.linear_steps, quality.binary_steps
     p["linear_approximation"] = quality.linear_approximation
     p["refraction_linear"], p["refraction_binary"] = quality.refraction_steps
-    p["shadow_steps"] = quality.shadow_steps
     p["adapt_angle"], p["adapt_distance"] = quality.adapt_angle, quality.adapt_distance
     p["complexity"] = quality.complexity
     p["silhouettes"] = quality.silhouettes

@@ -8,6 +8,7 @@ override HAS_MESHES: bool = true;
 
 const PARALLEL = 0u;
 const FROM_POINT = 1u;
+const BOX_FACES = 6u;
 const OPEN_SAMPLES = 8u;      // along each edge of a patch
 
 @compute @workgroup_size(64)
@@ -15,7 +16,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (id.x >= light.batch_count) { return; }
     let tile = light.batch_first + id.x;
     var face = 0u;
-    for (var k = 1u; k < light.face_count; k++) { face = select(face, k, tile >= light.faces[k].w); }
+    for (var k = 1u; k < BOX_FACES; k++) { face = select(face, k, k < light.face_count && tile >= light.faces[k].w); }
     let shape = light.faces[face];
     let local = tile - shape.w;
     let corner = vec2f(f32(local % shape.y), f32(local / shape.y));
@@ -38,13 +39,10 @@ fn begin_corner(k: u32, face: u32, at: vec2f) {
     // Not on the very edges: a ray along one must stay inside.
     let across = 0.99999 * (2.0 * at - 1.0);
     let unit = untwisted(vec3f(across, along), axis);
-    if (light.inside != 0u) {
-        corner_x[k] = light.position;
-        corner_p[k] = unit;
-        return;
-    }
-    corner_x[k] = light.box_center + unit * half;
-    corner_p[k] = select(corner_x[k] - light.position, light.direction, light.kind == PARALLEL);
+    let inside = light.inside != 0u;
+    let x = light.box_center + unit * half;
+    corner_x[k] = select(x, light.position, inside);
+    corner_p[k] = select(select(x - light.position, light.direction, light.kind == PARALLEL), unit, inside);
 }
 
 // From (across, across, along) back to the axes of the object.
@@ -54,14 +52,15 @@ fn untwisted(v: vec3f, axis: u32) -> vec3f {
 
 // Projected area in world metres squared, or solid angle, of the patch; for a lamp with a face, times the cosine there.
 fn share_of_light() -> f32 {
-    if (light.kind == PARALLEL) { return cross_section(corner_x, light.direction) * volume.scale * volume.scale; }
+    let section = cross_section(corner_x, light.direction) * volume.scale * volume.scale;
     let a = normalize(corner_p[0]);
     let b = normalize(corner_p[1]);
     let c = normalize(corner_p[2]);
     let e = normalize(corner_p[3]);
     let way = normalize(a + b + c + e);
     let facing = select(max(dot(way, light.direction), 0.0), 1.0, light.kind == FROM_POINT);
-    return (solid_angle(a, b, c) + solid_angle(b, e, c)) * facing;
+    let angle = (solid_angle(a, b, c) + solid_angle(b, e, c)) * facing;
+    return select(angle, section, light.kind == PARALLEL);
 }
 
 // Of a triangle of unit vectors [vanoosterom1983, eq. 8].

@@ -11,10 +11,9 @@
 @fragment
 fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     var light = textureLoad(radiance, vec2i(position.xy), 0).rgb;
-    if finish_params.glow > 0.0 {
-        let uv = 0.5 * position.xy / vec2f(textureDimensions(blurred));
-        light = mix(light, textureSampleLevel(blurred, blurred_sampler, uv, 0.0).rgb, finish_params.glow);
-    }
+    let uv = 0.5 * position.xy / vec2f(textureDimensions(blurred));
+    let scattered = mix(light, textureSampleLevel(blurred, blurred_sampler, uv, 0.0).rgb, finish_params.glow);
+    light = select(light, scattered, finish_params.glow > 0.0);
     let exposed = into_gamut(finish_params.exposure * light);
     return vec4f(srgb_encode(saturate(tone_mapped(exposed))), 1.0);
 }

@@ -54,7 +54,7 @@ fn both_layers(frame_at: ReliefFrame, at: LayerPoint, is_solid: bool, on_wall: b
     }
     var outside: OutsideLooks;
     var radiance = vec3f(0.0);
-    let rays = select(1u, 3u, relief.dispersion != 0u);
+    let rays = select(1u, 3u, RELIEF_DISPERSION);
     let mirrors = select(0u, 1u, RELIEF_REFLECTION != 0u);
     if RELIEF_REFLECTION == 0u {
         let alpha = relief.translucent_roughness * relief.translucent_roughness;

@@ -4,6 +4,8 @@
 //!import techniques/relief/shaders/refraction
 //!import techniques/relief/shaders/solid
 
+override RELIEF_DISPERSION: bool = false;  // whether red, green and blue are refracted apart
+
 // Where a ray of the camera is on the translucent layer
 struct LayerPoint {
     uv: vec2f,
@@ -16,7 +18,7 @@ struct LayerPoint {
 }
 
 fn relief_layer_reflectance(cos_i: f32) -> vec3f {
-    if relief.dispersion == 0u {
+    if !RELIEF_DISPERSION {
         return vec3f(fresnel_dielectric(cos_i, relief.n_outside, relief.n_layer.g));
     }
     return vec3f(
@@ -41,10 +43,9 @@ fn relief_reflect(frame_at: ReliefFrame, at: LayerPoint, outside: ptr<function, 
 // A lossless ray keeps L / n^2: radiance of the layer below leaves the matter divided by the squared relative index
 // [born1999, 4.8.3]; a ray that passes right through sees the surroundings as they are.
 fn relief_refract(frame_at: ReliefFrame, at: LayerPoint, k: u32, outside: ptr<function, OutsideLooks>) -> SolidLook {
-    let apart = relief.dispersion != 0u;
-    let n = select(relief.n_layer.g, relief.n_layer[k], apart);
+    let n = select(relief.n_layer.g, relief.n_layer[k], RELIEF_DISPERSION);
     let one = vec3f(vec3u(k) == vec3u(0u, 1u, 2u));
-    let share = select(vec3f(1.0), one, apart) * (1.0 - at.reflected);
+    let share = select(vec3f(1.0), one, RELIEF_DISPERSION) * (1.0 - at.reflected);
     let inside = refract(at.direction_ws, at.n_ws, relief.n_outside, n);
     let end = relief_refracted(frame_at, at.uv, at.p_ws, at.h, inside.direction, n);
     let weight = share * exp(-relief.absorption * end.path_m);

@@ -2,6 +2,7 @@
 //!import optics/attenuation
 //!import optics/fresnel
 //!import optics/snell
+//!import techniques/relief/shaders/light_stepped
 //!import techniques/relief/shaders/light_walk
 
 const THROUGH_CROSSINGS = 8u;
@@ -62,7 +63,7 @@ fn relief_through(
 // The same in equal steps up to the top of both layers, each crossing halved [timonen2006, 4.2.2]
 fn relief_stepped_through(frame_at: ReliefFrame, uv: vec2f, h: f32, within: bool, to_lamp_ws: vec3f) -> vec3f {
     let ray = relief_ray(frame_at, uv, h, to_lamp_ws);
-    let steps = max(relief.shadow_steps, 1u);
+    let steps = RELIEF_SHADOW_STEPS;
     let step = relief_reach(ray) / f32(steps);
     var inside = within;
     var entered = 0.0;
