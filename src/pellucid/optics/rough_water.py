@@ -11,7 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
-_TINY = 1e-12
+_TINY = 1e-24
+# Least cosine of the normal of a facet of water with y, about 80 degrees: where it is upright a lamp fills all slopes.
+_STEEPEST = 0.2
 
 
 def slope_density(offset: ArrayLike, variance: ArrayLike) -> Array:
@@ -88,7 +90,7 @@ def disc_variance(light: ArrayLike, facet: ArrayLike, radius: ArrayLike, n_light
         radius^2 / 4, of a normal distribution in its place. n_light : index on the side of the light; 1 if mirrored.
     """
     towards, m = np.asarray(light, float), np.asarray(facet, float)
-    up = np.where(np.abs(m[..., 1]) < _TINY, _TINY, m[..., 1])
+    up = np.where(np.abs(m[..., 1]) < _STEEPEST * np.linalg.norm(m, axis=-1), _STEEPEST, m[..., 1])
     zeta_x, zeta_z = -m[..., 0] / up, -m[..., 2] / up
     # A change of the light by q moves the facet's slopes by -(q_xz + zeta q_y) n / m_y.
     one = np.stack([np.ones_like(zeta_x), zeta_x, np.zeros_like(zeta_x)], -1)
@@ -119,15 +121,15 @@ def glint(
     """
     v, towards = np.asarray(view, float), np.asarray(light, float)
     m = facet_normal(v, towards, n_view, n_light)
-    length = np.maximum(np.linalg.norm(m, axis=-1), _TINY)
+    length = np.maximum(np.linalg.norm(m, axis=-1), 1e-12)
     h = m / length[..., None]
     h = np.where(h[..., 1:2] < 0.0, -h, h)
-    up = np.maximum(h[..., 1], 1e-4)
+    up = np.maximum(h[..., 1], _STEEPEST)
     v_h, l_h = (v * h).sum(-1), (towards * h).sum(-1)
     refracted = np.abs(l_h * v_h) * (np.asarray(n_view, float) / length) ** 2
     share = np.where(v[..., 1] * towards[..., 1] > 0.0, 0.25, refracted)
     density = slope_density(-h[..., ::2] / up[..., None] - np.asarray(slope, float), variance)
     # Facets turn each side to its medium: those count that viewer and light see from the side that they are on.
-    faced = (v_h * v[..., 1] > 0.0) & (l_h * towards[..., 1] > 0.0)
+    faced = (v_h * v[..., 1] > 0.0) & (l_h * towards[..., 1] > 0.0) & (h[..., 1] > _STEEPEST)
     area = np.maximum(visible_area(np.where(v[..., 1:2] < 0.0, -v, v), slope, variance), 1e-6)
     return np.where(faced, share * density / (up**4 * area), 0.0)

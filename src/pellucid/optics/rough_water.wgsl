@@ -2,7 +2,8 @@
 // surface, y up, towards the viewer and towards the light. Slopes (dh/dx, dh/dz) have a mean and the covariance
 // `variance`: xx, zz, xz. Twin of rough_water.py.
 
-const ROUGH_TINY = 1e-12;
+const ROUGH_TINY = 1e-24;
+const STEEPEST = 0.2;  // least cosine of the normal of a facet of water with y: about 80 degrees
 
 // Normal density of slopes `offset` from their mean, per unit of slope squared [cox1954, eq. 7]
 fn slope_density(offset: vec2f, variance: vec3f) -> f32 {
@@ -58,7 +59,7 @@ fn facet_normal(view: vec3f, light: vec3f, n_view: f32, n_light: f32) -> vec3f {
 // normal distribution of its mean square, radius^2 / 4 along any axis. `n_light` is 1 for mirrored light. A change of
 // the light by q moves the facet's slopes by -(q_xz + zeta q_y) n / m_y.
 fn disc_variance(light: vec3f, facet: vec3f, radius: f32, n_light: f32) -> vec3f {
-    let up = select(facet.y, ROUGH_TINY, abs(facet.y) < ROUGH_TINY);
+    let up = select(facet.y, STEEPEST, abs(facet.y) < STEEPEST * length(facet));
     let zeta = -facet.xz / up;
     let one = vec3f(1.0, zeta.x, 0.0);
     let two = vec3f(0.0, zeta.y, 1.0);
@@ -72,16 +73,16 @@ fn disc_variance(light: vec3f, facet: vec3f, radius: f32, n_light: f32) -> vec3f
 // normals, refracted light that of [walter2007, eq. 17]; over the area seen [ross2005; bruneton2010, sec. 5].
 fn glint(view: vec3f, light: vec3f, slope: vec2f, variance: vec3f, n_view: f32, n_light: f32) -> f32 {
     let m = facet_normal(view, light, n_view, n_light);
-    let size = max(length(m), ROUGH_TINY);
+    let size = max(length(m), 1e-12);
     let h = select(m, -m, m.y < 0.0) / size;
-    let up = max(h.y, 1e-4);
+    let up = max(h.y, STEEPEST);
     let v_h = dot(view, h);
     let l_h = dot(light, h);
     let refracted = abs(l_h * v_h) * (n_view / size) * (n_view / size);
     let share = select(refracted, 0.25, view.y * light.y > 0.0);
     let density = slope_density(-h.xz / up - slope, variance);
     // Facets turn each side to its medium: those count that viewer and light see from the side that they are on.
-    let faced = v_h * view.y > 0.0 && l_h * light.y > 0.0;
+    let faced = v_h * view.y > 0.0 && l_h * light.y > 0.0 && h.y > STEEPEST;
     let area = max(visible_area(select(view, -view, view.y < 0.0), slope, variance), 1e-6);
     return select(0.0, share * density / (up * up * up * up * area), faced);
 }

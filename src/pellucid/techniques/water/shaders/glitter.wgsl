@@ -4,13 +4,14 @@
 //!import surroundings/shaders/lights
 //!import techniques/water/shaders/waves
 
-const GLITTER_STEEPEST = 0.02;  // cosine of facets so steep that there are none, whose densities overflow
-const GLITTER_LEAST = 5e-4;  // least tangent of half the angle of a lamp: a point would be seen by no pixel
+const GLITTER_WIDEST = 0.02;  // tangent of half the angle that a point is taken to have, at most
 
 // Radiance towards the viewer: E F p(slope) over what is seen [ross2005; bruneton2010, sec. 5]; from within the water
 // (1 - F) of the light that comes through.
 fn water_glitter(p_ws: vec3f, at: WavePoint, view_ws: vec3f, from_within: bool) -> vec3f {
     let n_view = select(water.n_outside, water.n_water.g, from_within);
+    // A point would be seen by no pixel.
+    let least = clamp(frame.pixel_footprint, 5e-4, GLITTER_WIDEST);
     var radiance = vec3f(0.0);
     for (var light = 0u; light < light_count(); light++) {
         let towards = lights[light].direction;
@@ -18,11 +19,8 @@ fn water_glitter(p_ws: vec3f, at: WavePoint, view_ws: vec3f, from_within: bool) 
             continue;
         }
         let facet = facet_normal(view_ws, towards, n_view, water.n_outside);
-        if abs(facet.y) < GLITTER_STEEPEST * length(facet) {
-            continue;
-        }
         let moved = select(1.0, water.n_outside, from_within);
-        let disc = disc_variance(towards, facet, max(lights[light].radius, GLITTER_LEAST), moved);
+        let disc = disc_variance(towards, facet, max(lights[light].radius, least), moved);
         let sent = glint(view_ws, towards, at.slope, at.variance + disc, n_view, water.n_outside);
         let mirrored = fresnel_dielectric(abs(dot(towards, normalize(facet))), water.n_outside, water.n_water.g);
         // Of facets that face the lamp some lie behind others [smith1967].
