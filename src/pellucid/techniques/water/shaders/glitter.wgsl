@@ -22,7 +22,8 @@ fn water_glitter(p_ws: vec3f, at: WavePoint, view_ws: vec3f, from_within: bool) 
         let moved = select(1.0, water.n_outside, from_within);
         let disc = disc_variance(towards, facet, max(lights[light].radius, least), moved);
         let sent = glint(view_ws, towards, at.slope, at.variance + disc, n_view, water.n_outside);
-        let mirrored = fresnel_dielectric(abs(dot(towards, normalize(facet))), water.n_outside, water.n_water.g);
+        let cosine = abs(dot(towards, facet)) / max(length(facet), 1e-12);
+        let mirrored = fresnel_dielectric(cosine, water.n_outside, water.n_water.g);
         // Of facets that face the lamp some lie behind others [smith1967].
         let ahead = max(towards.y - dot(at.slope, towards.xz), 0.0) / max(visible_area(towards, at.slope, at.variance), 1e-6);
         let lit = saturate(ahead) * shadow_visibility(light, p_ws, wave_normal(at.slope));
