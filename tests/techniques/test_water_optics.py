@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -57,6 +57,21 @@ def test_lossless_water_vanishes_in_an_even_sky(wavy: bool, camera: pl.Camera, r
     sky = pl.Environment.constant((0.3, 0.5, 0.7))
     frame = renderer.render(pl.Scene(camera=camera, environment=sky, objects=[water]), size=SIZE)
     assert frame.radiance == pytest.approx(np.broadcast_to((0.3, 0.5, 0.7), frame.radiance.shape), rel=1e-4)
+
+
+@pytest.mark.parametrize("wavy", [False, True])
+@pytest.mark.parametrize("height", [1.0, -0.5], ids=["above", "below"])
+def test_white_things_in_lossless_water_vanish_in_an_even_sky(wavy: bool, height: float, renderer: Renderer) -> None:
+    white: dict[str, Any] = {"base_color": (1, 1, 1), "specular": 0.0}
+    floor, ball = (
+        pl.Mesh.plane(60.0, position=(0, -1, 0), **white),
+        pl.Mesh.sphere(0.4, position=(0.3, -0.1, 0), **white),
+    )
+    water = pl.Water(extent_m=58.0, medium=N, waves=sines(0.1) if wavy else None)
+    sky = pl.Environment.constant((0.3, 0.5, 0.7))
+    camera = camera_at((0, height, 2), (0, -0.2, 0))
+    frame = renderer.render(pl.Scene(camera=camera, environment=sky, objects=[floor, ball, water]), size=SIZE)
+    assert frame.radiance == pytest.approx(np.broadcast_to((0.3, 0.5, 0.7), frame.radiance.shape), rel=1e-3)
 
 
 @pytest.mark.parametrize("height", [0.8, -0.6], ids=["above", "below"])

@@ -22,6 +22,8 @@ WaterParams = struct(
         ("color", "vec3f"),  # of deep water [mihalik2008, eq. 4]
         ("clarity", "f32"),  # 1/m [mihalik2008, eq. 5]
         ("wave_slope", "f32"),  # steepest slope of the moment
+        ("trough", "f32"),  # lowest and highest of the moment, over the level, metres
+        ("crest", "f32"),
         ("wave_cell_m", "f32"),  # side of a texel of the finest layer
         ("foam", "f32"),  # 0 to 1
         ("schlick_power", "f32"),

@@ -25,6 +25,7 @@ from pellucid.techniques.water.caustics import WaterLight
 from pellucid.techniques.water.glow import WaterGlow
 from pellucid.techniques.water.layouts import WaterParams, WaterViews
 from pellucid.techniques.water.prepare import WaveMaps, parameters, same_surfaces, surfaces_of, wave_maps
+from pellucid.techniques.water.region import covered
 from pellucid.techniques.water.views import SurfacePictures, hidden_box, needs_pictures
 from pellucid.techniques.water.wave_moments import moment_levels
 
@@ -139,6 +140,13 @@ class WaterTechnique:
             self._draw(encoder, body, targets, surroundings, timer)
 
     def _draw(self, encoder: Any, body: Body, targets: Targets, surroundings: Surroundings, timer: Any) -> None:
+        top_m, clip = (
+            body.item.level + body.waves.range_m[1],
+            surroundings.frame["clip_from_world"].T.astype(np.float64),
+        )
+        region = covered(*body.item.bounds_m, top_m, clip, targets.size)
+        if 0 in region[2:]:
+            return
         copies = {
             "opaque_color": (targets.color, self._target("opaque_color", COLOR_FORMAT, targets.size)),
             "opaque_depth": (targets.depth, self._target("opaque_depth", DEPTH_FORMAT, targets.size)),
@@ -159,6 +167,7 @@ class WaterTechnique:
             depth=targets.depth_view,
             clear=[(0.0, 0.0, 0.0, 0.0)],
             bindings=bound,
+            scissor=region,
             timer=timer,
             label="water search",
         )
@@ -166,6 +175,7 @@ class WaterTechnique:
             encoder,
             color=[targets.color_view],
             bindings={**bound, "water_hits": hits},
+            scissor=region,
             timer=timer,
             label="water shade",
         )

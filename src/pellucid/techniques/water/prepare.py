@@ -28,7 +28,7 @@ class WaveMaps:
     tiles : (L, 4) float32: width and depth in metres, 1 where it repeats, 0.
     limits_m : lowest and highest sum of heights at any time.
     slope : steepest slope of the moment. cell_m : side of a texel of the finest layer.
-    surfaces : what the sources gave.
+    surfaces : what the sources gave. range_m : lowest and highest sum of heights of the moment, or beyond.
     """
 
     texels: np.ndarray
@@ -37,6 +37,7 @@ class WaveMaps:
     slope: float
     cell_m: float
     surfaces: tuple[Any, ...] = ()
+    range_m: tuple[float, float] = (0.0, 0.0)
 
 
 def sources_of(waves: Any) -> Sequence[Any]:
@@ -78,7 +79,8 @@ def wave_maps(item: Water, surfaces: tuple[Any, ...]) -> WaveMaps:
     cells = [(s.tile_m[0] / columns, s.tile_m[1] / rows) for s in sources]
     slope = sum(_steepest(texels[..., 0], cell) for texels, cell in zip(layers, cells, strict=True))
     cell = min(min(s.tile_m[0] / s.shape[1], s.tile_m[1] / s.shape[0]) for s in sources)
-    return WaveMaps(np.stack(layers), tiles, (low, high), slope, float(cell), surfaces)
+    now = sum(float(t[..., 0].min()) for t in layers), sum(float(t[..., 0].max()) for t in layers)
+    return WaveMaps(np.stack(layers), tiles, (low, high), slope, float(cell), surfaces, now)
 
 
 def _layer(source: Any, surface: Any, shape: tuple[int, int]) -> np.ndarray:
@@ -111,9 +113,13 @@ def _repeats(source: Any) -> bool:
 
 def _steepest(heights: np.ndarray, cell_m: tuple[float, float]) -> float:
     """Bound of the slope of the surface that is linear along both axes between the centres of texels."""
-    along_x = np.abs(np.diff(heights, axis=1, append=heights[:, :1])).max() / cell_m[0]
-    along_z = np.abs(np.diff(heights, axis=0, append=heights[:1])).max() / cell_m[1]
-    return float(np.hypot(along_x, along_z))
+    along_x, along_z = (
+        np.abs(np.roll(heights, -1, axis) - heights) / cell for axis, cell in ((1, cell_m[0]), (0, cell_m[1]))
+    )
+    # Within a cell a slope along one axis lies between those of the two edges along it.
+    either_x = np.maximum(along_x, np.roll(along_x, -1, 0))
+    either_z = np.maximum(along_z, np.roll(along_z, -1, 1))
+    return float(np.sqrt((either_x**2 + either_z**2).max()))
 
 
 def _slopes(heights: np.ndarray, source: Any) -> np.ndarray:
@@ -131,6 +137,7 @@ def parameters(item: Water, quality: WaterQuality, waves: WaveMaps, time_s: floa
     p["low"], p["high"] = item.bounds_m
     p["center"], p["level"] = item.center, item.level
     p["wave_low"], p["wave_high"] = waves.limits_m
+    p["trough"], p["crest"] = waves.range_m
     matter = item.matter
     p["n_water"] = matter.n_rgb if item.dispersion else np.full(3, matter.n_d)
     p["n_outside"] = item.ambient_n

@@ -12,7 +12,8 @@ struct WaterMeeting {
 }
 
 const MEET_STEPS = 192u;
-const MEET_REFINEMENTS = 6u;
+const MEET_REFINEMENTS = 10u;
+const MEET_ROUNDING = 2e-7;  // of the way: a gap that need not become less
 const MEET_PIXELS = 0.5;  // crests that stand out by less may be passed
 
 // First crossing at 0 <= t < t_max
@@ -66,8 +67,8 @@ fn water_gap(origin_ws: vec3f, direction_ws: vec3f, t: f32) -> f32 {
 // Where a ray is between the lowest and the highest wave
 fn water_slab(y: f32, dy: f32) -> vec2f {
     let safe = select(dy, select(-1e-20, 1e-20, dy >= 0.0), abs(dy) < 1e-20);
-    let a = (water.wave_low - y) / safe;
-    let b = (water.wave_high - y) / safe;
+    let a = (water.trough - y) / safe;
+    let b = (water.crest - y) / safe;
     return vec2f(min(a, b), max(a, b));
 }
 
@@ -77,7 +78,7 @@ fn water_refined(origin_ws: vec3f, direction_ws: vec3f, t: vec2f, gaps: vec2f, s
     var gap = gaps;
     var best = vec2f(t.y, abs(gaps.y));
     var before = 0.0;
-    for (var k = 0u; k < MEET_REFINEMENTS && gap.x > 0.0 && gap.y < 0.0; k++) {
+    for (var k = 0u; k < MEET_REFINEMENTS && gap.y < 0.0 && best.y > MEET_ROUNDING * t.y; k++) {
         let middle = mix(at.x, at.y, gap.x / (gap.x - gap.y));
         let found = side * water_gap(origin_ws, direction_ws, middle);
         let stays = select(1.0, 0.5, found * before > 0.0);
