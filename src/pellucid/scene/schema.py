@@ -361,6 +361,7 @@ class WaterQualityFile(Model):
     caustic_intersection: StrictStr = UNSET
     shadows: StrictBool = UNSET
     god_rays: StrictBool = UNSET
+    glow: Number = UNSET
 
 
 class WaterFile(Model):
