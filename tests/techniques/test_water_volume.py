@@ -58,7 +58,9 @@ def test_light_scattered_once_is_the_sum_over_the_way(renderer: Renderer) -> Non
         cosine = inner @ way
         turned = 1.0 + 0.5 * (1.0 - cosine) * (0.5 * (1.0 - G) - 1.0)
         lost = ABSORBED + turned * SCATTERED
-        beam = np.exp(-lost[:, None] * (s + (-origin[1] - s * way[1]) / inner[1])).mean(axis=1) * length
+        fade = ABSORBED + 0.5 * (1.0 - G) * SCATTERED
+        depth = (-origin[1] - s * way[1]) / inner[1]
+        beam = np.exp(-lost[:, None] * s - fade[:, None] * depth).mean(axis=1) * length
         expected = flux * SCATTERED * henyey_greenstein(cosine, G) * beam / N**2
         np.testing.assert_allclose(radiance, expected, rtol=2e-3)
 

@@ -3,7 +3,8 @@
 A technique that draws water says with `Submersion.set` where its waters are and what fills them, and fills the maps of
 the light that comes through their surfaces. `shaders/shade.wgsl` then lights what lies below a surface as
 
-    sun:   E = E_0 l.y / l'.y  map  exp(-(a + b) s)     across the refracted direction l', s metres through the water;
+    sun:   E = E_0 l.y / l'.y  map  exp(-(a + b) s)     across the refracted direction l', s metres through the water,
+           and what is scattered forward on the way, without the sharpness of the map;
     sky:   through Snell's window, weakened by the depth, and thrown back by the surface; see submerged_sky.wgsl;
     lamps: through the level surface, each along its own bent way; see submerged_lamp.wgsl.
 

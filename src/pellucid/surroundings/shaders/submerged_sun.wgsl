@@ -23,12 +23,16 @@ fn sample_submerged_sun(light: u32, p_ws: vec3f, n_ws: vec3f, at: Submerged) -> 
     return LightSample(direction, irradiance * submerged_beam(light, p_ws, n_ws, direction, at));
 }
 
-// What is left of the flux that falls on the surface above a point: its share that comes through, shadows, and loss
+// What is left of the flux that falls on the surface above a point: its share that comes through, shadows, and loss. The
+// beam loses all that is absorbed or scattered. What is scattered by less than a right angle comes too [gordon1973], from
+// a place as wide as it goes astray: the mean of the map there, of four points.
 fn submerged_beam(light: u32, p_ws: vec3f, n_ws: vec3f, direction: vec3f, at: Submerged) -> vec3f {
     let level_m = submersion.level[at.water].x;
     let index = submersion.index[at.water].rgb;
     let towards = lights[light].direction;
-    let extinction = submersion.absorption[at.water].rgb + submersion.scattering[at.water].rgb;
+    let scattering = submersion.scattering[at.water];
+    let extinction = submersion.absorption[at.water].rgb + scattering.rgb;
+    let attenuation = submersion.absorption[at.water].rgb + 0.5 * (1.0 - scattering.a) * scattering.rgb;
     var share = 1.0 - vec3f(
         fresnel_dielectric(towards.y, 1.0, index.r),
         fresnel_dielectric(towards.y, 1.0, index.g),
@@ -36,6 +40,8 @@ fn submerged_beam(light: u32, p_ws: vec3f, n_ws: vec3f, direction: vec3f, at: Su
     );
     let entry = submerged_entry(p_ws, level_m, direction.xz / direction.y);
     let path_m = max(level_m + submerged_wave(at.water, entry) - p_ws.y, 0.0) / direction.y;
+    let astray_m = SUBMERGED_ASTRAY * path_m * sqrt(max(1.0 - scattering.a, 0.0));
+    var soft = share;
     let layer = lights[light].water_layer;
     if layer >= 0 {
         let camera = submersion.slope[at.water * MAX_WATER_LIGHTS + u32(layer)];
@@ -44,13 +50,26 @@ fn submerged_beam(light: u32, p_ws: vec3f, n_ws: vec3f, direction: vec3f, at: Su
         if all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0)) {
             let map = u32(submersion.level[at.water].z) + u32(layer);
             share = textureSampleLevel(submerged_light, caustic_sampler, uv, map, 0.0).rgb;
+            soft = submerged_mean(uv, map, astray_m / (submersion.bounds[at.water].zw - submersion.bounds[at.water].xy));
             share *= mix(1.0, submerged_visibility(at.water, map, p_ws, n_ws, slope), camera.z);
         } else {
             // Light that has not come in through the surface: past walls, if there are any
             share *= shadow_visibility(light, p_ws, n_ws);
         }
     }
-    return share * exp(-extinction * path_m);
+    let direct = exp(-extinction * path_m);
+    return share * direct + soft * (exp(-attenuation * path_m) - direct);
+}
+
+const SUBMERGED_ASTRAY = 0.7;  // of the way, times the root of 1 - g: angles are about the root of 2 (1 - g), over the way
+
+fn submerged_mean(uv: vec2f, map: u32, reach: vec2f) -> vec3f {
+    var sum = vec3f(0.0);
+    for (var k = 0; k < 4; k++) {
+        let corner = vec2f(f32(k & 1), f32(k >> 1)) - 0.5;
+        sum += textureSampleLevel(submerged_light, caustic_sampler, uv + corner * reach, map, 0.0).rgb;
+    }
+    return 0.25 * sum;
 }
 
 // Whether the first mesh below the surface, along the light, is the point's own; filtered and kept off the surface as

@@ -35,7 +35,7 @@ fn sun_beam(to_light: vec3f, direction_ws: vec3f, irradiance: vec3f) -> WaterBea
     let cosine = dot(to_light, direction_ws);
     let attenuation = water_attenuation(cosine);
     let scattered = irradiance * water.scattering * henyey_greenstein(cosine, water.asymmetry);
-    return WaterBeam(scattered, attenuation / to_light.y, attenuation);
+    return WaterBeam(scattered, water_attenuation(-1.0) / to_light.y, attenuation);
 }
 
 // The sky as one broad beam, the light of an even patch as wide as Snell's window: its mean cosine to its middle is
@@ -46,13 +46,14 @@ fn sky_inscatter(p_ws: vec3f, direction_ws: vec3f, length_m: f32) -> vec3f {
     let attenuation = water_attenuation(cosine);
     let irradiance = frame.environment_intensity * submersion.sky[water.region].rgb / mean;
     let scattered = irradiance * water.scattering * henyey_greenstein(cosine, water.asymmetry * mean);
-    let beam = WaterBeam(scattered, attenuation / mean, attenuation);
+    let beam = WaterBeam(scattered, water_attenuation(-1.0) / mean, attenuation);
     return beam_inscatter(beam, max(water.level - p_ws.y, 0.0), direction_ws.y, length_m);
 }
 
-// 1/m, for light that is scattered by an angle of that cosine. What is turned back has on its ways lost what was absorbed
-// or turned back before, (1 - g)/2 of what is scattered, as a + b_b [gordon1973]; what goes on straight has lost all that
-// was scattered. Between them it is taken to change evenly with the cosine.
+// 1/m, of light on its way to the viewer that is scattered by an angle of that cosine. What comes from behind the viewer
+// has lost what is absorbed or turned back, (1 - g)/2 of what is scattered, as a + b_b [gordon1973]; what comes from
+// ahead has lost all that is scattered: else the same light would be scattered into the way again and again. Between
+// them it is taken to change evenly with the cosine. Down to the depth where it is scattered all light loses a + b_b.
 fn water_attenuation(cosine: f32) -> vec3f {
     let turned = mix(1.0, 0.5 * (1.0 - water.asymmetry), 0.5 - 0.5 * clamp(cosine, -1.0, 1.0));
     return water.absorption + turned * water.scattering;
