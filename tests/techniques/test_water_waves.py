@@ -139,3 +139,29 @@ def test_short_slopes_of_layers_add_up() -> None:
     ocean = Ocean(9.0, 20.0, 64.0, (64, 64))
     xx, xz, zz = ocean.short_slopes
     np.testing.assert_allclose(short_slopes([ocean, Sine(), ocean]), [2 * xx, 2 * zz, 2 * xz], rtol=1e-6)
+
+
+@pytest.mark.parametrize("below", [False, True])
+def test_the_mirrored_sun_has_its_light(device: Device, below: bool) -> None:
+    """Radiance over the picture of a lamp: E F above, E (1 - F) cos_i / cos_t below, where cameras measure L / n^2."""
+    from pellucid.optics import fresnel_dielectric, refract
+
+    n, down = 1.33, np.array([0.0, -np.sin(1.0), -np.cos(1.0)])
+    up = np.array([0.0, 1.0, 0.0])
+    share = float(fresnel_dielectric(np.sin(1.0), 1.0, n))
+    if below:
+        way = refract(down, up, 1.0, n).direction
+        position, wanted = 3.0 * way, (1.0 - share) * np.sin(1.0) / -way[1] / n**2
+    else:
+        way = down * (1, -1, 1)
+        position, wanted = 3.0 * way, share
+    sun = pl.DirectionalLight(tuple(down), irradiance=2.0, angular_radius_deg=1.0, cast_shadow=False)
+    camera = pl.Camera(tuple(position), (0.0, 0.0, 0.0), fov_deg=14.0)
+    for waves in (None, Ocean(1.0, 0.0, 0.5, (64, 64), fetch_m=10.0, amplitude=0.15, seed=2)):
+        water = pl.Water(extent_m=60.0, waves=waves, medium=n)
+        scene = pl.Scene(camera, pl.Environment.constant(0.0), [sun], [water])
+        radiance = pl.Renderer(device).render(scene, (64, 64), samples=2).radiance[..., 1].astype(float)
+        half = np.tan(np.radians(7.0))
+        side = (np.arange(64) + 0.5) / 32.0 * half - half
+        angle = (2.0 * half / 64) ** 2 / (1.0 + side[:, None] ** 2 + side**2) ** 1.5
+        assert (radiance * angle).sum() / 2.0 == pytest.approx(wanted, rel=0.02 if waves is None else 0.08)
