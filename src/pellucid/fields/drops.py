@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pellucid.errors import SceneError
+from pellucid.fields.numbers import number
 from pellucid.fields.sessile import (
     DENSITY,
     GRAVITY,
@@ -143,18 +144,18 @@ class Drops:
         below_m: float = 0.002,
     ) -> None:
         self.shape = _shape(shape)
-        self.cell_m = _number("cell_m", cell_m, low=1e-9)
+        self.cell_m = number("cell_m", cell_m, low=1e-9)
         self.seed = _whole("seed", seed)
         self.initial = _whole("initial", initial)
-        self.tilt = float(np.radians(_number("tilt_deg", tilt_deg, low=0.0, high=90.0)))
-        self.rain_m_per_s = _number("rain_m_per_s", rain_m_per_s, low=0.0, high=1e-3)
-        self.dew_m_per_s = _number("dew_m_per_s", dew_m_per_s, low=0.0, high=1e-3)
+        self.tilt = float(np.radians(number("tilt_deg", tilt_deg, low=0.0, high=90.0)))
+        self.rain_m_per_s = number("rain_m_per_s", rain_m_per_s, low=0.0, high=1e-3)
+        self.dew_m_per_s = number("dew_m_per_s", dew_m_per_s, low=0.0, high=1e-3)
         self.volumes_m3 = _volumes(volumes_ul)
         self.contact_angle = check_angle("contact_angle_deg", contact_angle_deg)
-        self.hysteresis = _number("hysteresis", hysteresis, low=0.0, high=2.0)
-        self.drag_pa_s = _number("drag_pa_s", drag_pa_s, low=1e-6)
-        self.film_m = _number("film_m", film_m, low=0.0, high=1e-3)
-        self.below_m = _number("below_m", below_m, low=1e-9)
+        self.hysteresis = number("hysteresis", hysteresis, low=0.0, high=2.0)
+        self.drag_pa_s = number("drag_pa_s", drag_pa_s, low=1e-6)
+        self.film_m = number("film_m", film_m, low=0.0, high=1e-3)
+        self.below_m = number("below_m", below_m, low=1e-9)
         self._rim_table = rim_table(self.contact_angle)
         self.placed: list[Placed] = []
         self._restart()
@@ -181,7 +182,7 @@ class Drops:
         ------
         SceneError : the time is negative or not finite, or so late that it takes more than `MOST_STEPS` steps.
         """
-        time_s = _number("time_s", time_s, low=0.0)
+        time_s = number("time_s", time_s, low=0.0)
         last = int(np.floor(time_s / STEP_S + 1e-6))
         if last > MOST_STEPS:
             raise SceneError("time_s", f"is {time_s:g}", f"takes more than {MOST_STEPS} steps of {STEP_S:g} s")
@@ -208,10 +209,10 @@ class Drops:
         SceneError : it is not on the pane, has no volume, or comes before now.
         """
         width, depth = self.tile_m
-        x = _number("x_m", x_m, low=-0.5 * width, high=0.5 * width)
-        z = _number("z_m", z_m, low=-0.5 * depth, high=0.5 * depth)
-        when = self.time_s if time_s is None else _number("time_s", time_s, low=self.time_s)
-        placed = Placed(when, x, z, _number("volume_ul", volume_ul, low=1e-9, high=1e4))
+        x = number("x_m", x_m, low=-0.5 * width, high=0.5 * width)
+        z = number("z_m", z_m, low=-0.5 * depth, high=0.5 * depth)
+        when = self.time_s if time_s is None else number("time_s", time_s, low=self.time_s)
+        placed = Placed(when, x, z, number("volume_ul", volume_ul, low=1e-9, high=1e4))
         self.placed.append(placed)
         self.placed.sort(key=lambda p: p.time_s)
         return placed
@@ -427,7 +428,7 @@ def _volumes(volumes_ul: Any) -> tuple[float, float]:
         low, high = volumes_ul
     except (TypeError, ValueError):
         raise SceneError("volumes_ul", f"is {volumes_ul!r}", "give the smallest and the largest volume") from None
-    small, large = (_number("volumes_ul", v, low=1e-6, high=1e4) * 1e-9 for v in (low, high))
+    small, large = (number("volumes_ul", v, low=1e-6, high=1e4) * 1e-9 for v in (low, high))
     if small > large:
         raise SceneError("volumes_ul", f"is {volumes_ul!r}", "give the smaller volume first")
     return small, large
@@ -437,11 +438,3 @@ def _whole(name: str, value: Any) -> int:
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 0:
         raise SceneError(name, f"is {value!r}", "give a whole number, at least 0")
     return int(value)
-
-
-def _number(name: str, value: Any, low: float = -np.inf, high: float = np.inf) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
-        raise SceneError(name, f"is {value!r}", "give a number")
-    if not (np.isfinite(value) and low <= value <= high):
-        raise SceneError(name, f"is {float(value):g}", f"use {low:g} to {high:g}")
-    return float(value)

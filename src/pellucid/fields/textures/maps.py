@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from pellucid.errors import SceneError
 from pellucid.fields.heightfield import slopes_of
+from pellucid.fields.numbers import number
 
 Values = npt.NDArray[np.float64]
 Texels = npt.NDArray[np.float32]
@@ -113,16 +114,6 @@ def whole(extent_m: float, pitch_m: float, *, even: bool = False) -> int:
     """How many pieces of about `pitch_m` fill the tile; an even number of courses when bonds alternate."""
     step = 2 if even else 1
     return max(step, step * round(extent_m / pitch_m / step))
-
-
-def number(name: str, value: Any, *, low: float = -np.inf, high: float = np.inf, unit: str = "") -> float:
-    """A finite float from `low` to `high`, or SceneError."""
-    text = f"use {low:g} to {high:g} {unit}".rstrip() if np.isfinite(high) else f"use at least {low:g} {unit}".rstrip()
-    if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
-        raise SceneError(name, f"is {value!r}", text)
-    if not (np.isfinite(value) and low <= value <= high):
-        raise SceneError(name, f"is {value:g}", text)
-    return float(value)
 
 
 def grid(size: Any, seed: Any, tile_m: Any) -> tuple[int, np.random.Generator, float]:

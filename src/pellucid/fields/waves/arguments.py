@@ -8,18 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from pellucid.errors import SceneError
+from pellucid.fields.numbers import number
 
 #: Most cells along a side.
 LARGEST = 4096
-
-
-def number(name: str, value: Any, low: float = -np.inf, high: float = np.inf) -> float:
-    """A finite number from `low` to `high`."""
-    if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
-        raise SceneError(name, f"is {value!r}", "give a number")
-    if not (np.isfinite(value) and low <= value <= high):
-        raise SceneError(name, f"is {float(value):g}", f"use {low:g} to {high:g}")
-    return float(value)
 
 
 def numbers(name: str, value: Any, low: float = -np.inf, high: float = np.inf) -> npt.NDArray[np.float64]:

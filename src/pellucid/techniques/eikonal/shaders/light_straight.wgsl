@@ -94,7 +94,6 @@ fn edges_behind() -> vec2f {
     return cut_edges(end_x, normalize(select(through, back, first.total || last.total)));
 }
 
-const STRETCHED = 1.25;       // as wide as the rectangle of light_travel.wgsl can be, of the width that patches else may have
 const BEFORE_SURFACE = 0.25;   // voxels
 
 // Shares of the ways of all corners up to one front a little before the surface.

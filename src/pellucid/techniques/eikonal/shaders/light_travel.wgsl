@@ -4,6 +4,7 @@
 //!import techniques/eikonal/shaders/fields
 
 const WIDE = 1.3;         // voxels
+const STRETCHED = 1.25;   // voxels that a rectangle may be wide; so much wider a patch may be where a surface has stretched it
 
 // Rounding to whole quanta hands its remainder on, so that sums stay true.
 var<private> fluence_carry: vec3f = vec3f(0.5);
@@ -123,7 +124,7 @@ struct Cut {
     size: vec2f,
 }
 
-// The rectangle is as wide as the cut is on average, at most one voxel. In a regular front rectangles of just this size leave
+// The rectangle is as wide as the cut is on average, at most STRETCHED. In a regular front rectangles of just this size leave
 // neither gaps nor overlaps.
 fn footprint(edges: mat2x3f, axis: u32, size: vec3f, run: vec3f) -> Cut {
     let slope = run.xy / select(run.z, 1e-9, abs(run.z) < 1e-9);
@@ -131,7 +132,7 @@ fn footprint(edges: mat2x3f, axis: u32, size: vec3f, run: vec3f) -> Cut {
     let second = turned(edges[1] / (2.0 * volume.half_extent) * size, axis);
     let u = first.xy - slope * first.z;
     let v = second.xy - slope * second.z;
-    return Cut(u, v, clamp(sqrt(u * u + v * v), vec2f(1e-3), vec2f(1.25)));
+    return Cut(u, v, clamp(sqrt(u * u + v * v), vec2f(1e-3), vec2f(STRETCHED)));
 }
 
 // Two numbers in 0..1 [jarzynski2020, pcg2d].

@@ -1,0 +1,33 @@
+"""Numbers that a field is described with, checked once and the same way for all of them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from pellucid.errors import SceneError
+
+
+def number(name: str, value: Any, low: float = -np.inf, high: float = np.inf, unit: str = "") -> float:
+    """A finite float from `low` to `high`.
+
+    Raises
+    ------
+    SceneError : it is no number, or out of range; the message says what to use.
+    """
+    if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
+        raise SceneError(name, f"is {value!r}", f"give a number, {_range(low, high, unit)}")
+    if not (np.isfinite(value) and low <= value <= high):
+        raise SceneError(name, f"is {float(value):g}", f"use {_range(low, high, unit)}")
+    return float(value)
+
+
+def _range(low: float, high: float, unit: str) -> str:
+    if np.isfinite(low) and np.isfinite(high):
+        text = f"{low:g} to {high:g}"
+    elif np.isfinite(low):
+        text = f"at least {low:g}"
+    else:
+        text = f"at most {high:g}" if np.isfinite(high) else "any finite one"
+    return f"{text} {unit}".rstrip()
