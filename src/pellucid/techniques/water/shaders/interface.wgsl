@@ -29,7 +29,7 @@ fn interface_radiance(hit: WaterHit, meets: bool, p_ws: vec3f, direction_ws: vec
     let n_ws = water_towards(select(outward, -outward, from_within), direction_ws);
     let cos_i = -dot(n_ws, direction_ws);
     let refracted_rays = select(1u, 3u, WATER_DISPERSION);
-    // None for pixels that show no surface: a software driver executes all others with them, but loops it leaves
+    // None for pixels that show no surface: of loops a software driver executes one turn for them, of branches all
     let rays = select(0u, refracted_rays + 1u, meets);
     var radiance = vec3f(0.0);
     var reflected = vec3f(0.0);
@@ -59,7 +59,8 @@ fn interface_radiance(hit: WaterHit, meets: bool, p_ws: vec3f, direction_ws: vec
         let glints = water_glitter(p_ws, at, -direction_ws, from_within);
         radiance += select(glints, vec3f(0.0), hit.kind == WATER_SIDE);
         if WATER_FOAM {
-            let cover = foam_cover(p_ws.xz, at.fold, footprint_m(p_ws));
+            let covered = foam_cover(p_ws.xz, at.fold, footprint_m(p_ws));
+            let cover = select(covered, 0.0, hit.kind == WATER_SIDE);
             radiance = mix(radiance, foam_radiance(p_ws, wave_normal(at.slope), from_within), cover);
         }
     }
