@@ -76,7 +76,7 @@ class WaterQuality(Value):
     color: str = "physical"
     underside: str = "exact"
     caustics: str = "gpu"
-    caustic_size: int = 512
+    caustic_size: int = 256
     caustic_camera: str = "refracted"
     caustic_intersection: str = "march"
     shadows: bool = True
