@@ -126,7 +126,7 @@ class SceneView:
             return
         triangles = self._triangle_target(size)
         if not (kept and seen == self._seen):
-            self._visibility(shown).run(
+            self._visibility(shown, waters=surroundings.submersion.active).run(
                 encoder,
                 color=[triangles.create_view()],
                 depth=depth,
@@ -176,10 +176,16 @@ class SceneView:
         ranges = visible_ranges(parts, clip_from_world, plane, shown.hidden)
         return [(3 * a, 3 * n) for a, n in ranges]
 
-    def _visibility(self, shown: Shown) -> RenderPass:
-        whole = "visibility" if shown.hidden is None else "visibility_hidden"
-        module = whole if shown.clip is None else "visibility_clipped"
-        return self._pass(module, shown.constants, targets=("r32uint",), depth_compare="greater", depth_write=True)
+    def _visibility(self, shown: Shown, waters: bool) -> RenderPass:
+        options: dict[str, Any] = {"targets": ("r32uint",), "depth_compare": "greater", "depth_write": True}
+        if shown.clip is not None:
+            return self._pass("visibility_clipped", shown.constants, **options)
+        # Where there is water both are made at once, so that a camera that dives waits for nothing.
+        names = ("visibility", "visibility_hidden") if waters else ("visibility",)
+        made = {name: self._pass(name, shown.constants, **options) for name in names}
+        if shown.hidden is None:
+            return made["visibility"]
+        return made.get("visibility_hidden") or self._pass("visibility_hidden", shown.constants, **options)
 
     def _shading(self, constants: dict[str, float]) -> RenderPass:
         # Against depth 0: only where something was drawn.
