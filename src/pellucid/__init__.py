@@ -41,7 +41,7 @@ if TYPE_CHECKING:
         save_scene,
     )
     from pellucid.session import illuminate, probe, render, trace
-    from pellucid.techniques.eikonal.light import Irradiance
+    from pellucid.techniques.eikonal.irradiance import Irradiance
     from pellucid.techniques.eikonal.trace import Rays
 
 _HOME = {
@@ -52,7 +52,7 @@ _HOME = {
     "load_scene": "scene", "save_scene": "scene",
     "Region": "fields.volume", "Volume": "fields.volume",
     "Frame": "frame", "Device": "gpu", "Renderer": "renderer", "Rays": "techniques.eikonal.trace",
-    "Irradiance": "techniques.eikonal.light", "illuminate": "session",
+    "Irradiance": "techniques.eikonal.irradiance", "illuminate": "session",
     "render": "session", "trace": "session", "probe": "session", "animate": "animation",
 }  # fmt: skip
 _WITHIN = {"waves": "fields.waves"}

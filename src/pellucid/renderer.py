@@ -26,7 +26,7 @@ from pellucid.techniques.sheet.passes import SheetTechnique
 from pellucid.techniques.water.passes import WaterTechnique
 
 if TYPE_CHECKING:
-    from pellucid.techniques.eikonal.light import Irradiance
+    from pellucid.techniques.eikonal.irradiance import Irradiance
 
 # Which technique draws which kind of object. Adding one takes a folder and a line here.
 TECHNIQUES: dict[type, Any] = {
@@ -112,7 +112,7 @@ class Renderer:
         self, scene: Scene, volume: RefractiveVolume, progress: Callable[[float], None] | None = None
     ) -> Irradiance:
         """Light in one volume of a scene. See `pellucid.illuminate`."""
-        from pellucid.techniques.eikonal.light import illuminate
+        from pellucid.techniques.eikonal.irradiance import illuminate
 
         self._check(scene, (1, 1), 1)
         if not any(item is volume for item in scene.objects):

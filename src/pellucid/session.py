@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from pellucid.gpu import Device
     from pellucid.renderer import Renderer
     from pellucid.scene import Quality, RefractiveVolume, Scene
-    from pellucid.techniques.eikonal.light import Irradiance
+    from pellucid.techniques.eikonal.irradiance import Irradiance
     from pellucid.techniques.eikonal.trace import Rays
 
 

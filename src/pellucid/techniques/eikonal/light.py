@@ -9,16 +9,14 @@ begins only where the lamp shines straight on a body: what comes through another
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pellucid.errors import SceneError
 from pellucid.gpu import ComputeKernel, Device
-from pellucid.scene import DirectionalLight, LightQuality
+from pellucid.scene import LightQuality
 from pellucid.surroundings.layouts import OutPatch
 from pellucid.techniques.eikonal.layouts import (
     MOST_OTHERS,
@@ -43,14 +41,12 @@ from pellucid.techniques.eikonal.light_params import (
 )
 from pellucid.techniques.eikonal.light_sources import Source, sources_of
 from pellucid.techniques.eikonal.prepare import Prepared
-from pellucid.techniques.eikonal.proxies import whole_box
 from pellucid.techniques.eikonal.resources import constants_of
 from pellucid.techniques.eikonal.wavelengths import common_draws, draws_of
 
 if TYPE_CHECKING:
     from pellucid.surroundings import Surroundings
     from pellucid.techniques.eikonal.bodies import Body
-    from pellucid.techniques.eikonal.passes import EikonalTechnique
 
 GENERATIONS = 64  # at most
 DIVISIONS = 24  # generations beside those that bounces take: patches are divided on their way
@@ -59,30 +55,6 @@ TOTAL_WORDS = 40
 # Light that has gone through so many bodies in a row goes to the meshes; so many bodies light one another at all.
 BODIES_IN_A_ROW = 4
 MOST_BODIES = MOST_OTHERS + 1
-
-
-@dataclass(frozen=True)
-class Irradiance:
-    """Light in a volume.
-
-    fluence : (Z, Y, X, 3) float32, radiant power that crosses a small ball at each voxel, per area of its
-        cross-section: in a parallel beam the irradiance of a surface that faces it. RGB, in the units of the lights.
-    direction : (Z, Y, X, 3) float32, mean direction of travel in object space, over 2 x 2 x 2 voxels; its length,
-        0 to 1, says how parallel light is.
-    flux_in, flux_absorbed, flux_out, flux_ended : (3,) float64, radiant power that entered the box, was absorbed or
-        scattered in it, left it, and was given up (too weak, too many bounces, lists full); they sum to nothing.
-    patches : how many patches were followed.
-    seconds : what it took.
-    """
-
-    fluence: np.ndarray
-    direction: np.ndarray
-    flux_in: np.ndarray
-    flux_absorbed: np.ndarray
-    flux_out: np.ndarray
-    flux_ended: np.ndarray
-    patches: int
-    seconds: float
 
 
 @dataclass
@@ -424,35 +396,6 @@ class LightSimulator:
         return self._kernels[key]
 
 
-def illuminate(
-    technique: EikonalTechnique,
-    lights: Sequence[object],
-    surroundings: Surroundings,
-    progress: Callable[[float], None] | None = None,
-) -> Irradiance:
-    """Light in the one body of a technique. See `pellucid.illuminate`."""
-    begun = time.perf_counter()
-    body = technique.bodies[0]
-    check_lights(body.prepared, body.world, lights)
-    lit = Lit(body, body.objects[0].light)
-    technique.simulator.run([lit], lights, surroundings, progress=progress)
-    totals, patches = technique.simulator.totals()
-    del totals["flux_unsent"]
-    shape = body.objects[0].volume.shape
-    fluence, direction = (_inner(field, body.prepared, shape) for field in technique.simulator.read())
-    seconds = time.perf_counter() - begun
-    return Irradiance(fluence, direction, **totals, patches=patches, seconds=seconds)
-
-
-def _inner(field: np.ndarray, prepared: Prepared, shape: tuple[int, int, int]) -> np.ndarray:
-    """At the voxels of a volume, without those that preparing has added on every side; larger ones are repeated."""
-    for axis, voxels in enumerate(shape):
-        have = round(prepared.extent_m[2 - axis] / prepared.voxel_m[2 - axis])
-        at = (np.arange(voxels) + (have - voxels) // 2 + 0.5) * field.shape[axis] / have
-        field = np.take(field, at.astype(int), axis=axis)
-    return np.ascontiguousarray(field)
-
-
 def generations_for(quality: LightQuality) -> int:
     """How many generations light is followed through. Each is a dispatch, also when nothing is left to follow."""
     return min(GENERATIONS, DIVISIONS + 2 * quality.bounces)
@@ -461,13 +404,6 @@ def generations_for(quality: LightQuality) -> int:
 def has_ambient_matter(prepared: Prepared) -> bool:
     """Whether matter without a surface dims light."""
     return prepared.absorption is not None or prepared.scattering is not None
-
-
-def flux_bound(prepared: Prepared, world: np.ndarray, lights: Sequence[object], quality: LightQuality) -> float:
-    """Power that the lamps shed on the box of a volume, brightest channel, if nothing is in between."""
-    box = whole_box(prepared)
-    fronts = (s for lamp in lights for s in sources_of(lamp, world, box, prepared.voxel, quality))
-    return sum(front.total_flux for front in fronts)
 
 
 def _fronts(lit: Lit, grid: tuple[int, int, int], lights: Sequence[object]) -> list[Source]:
@@ -483,26 +419,3 @@ def _grow(device: Device, buffers: dict[str, Any], sizes: dict[str, int]) -> Non
     for name, size in sizes.items():
         if name not in buffers or buffers[name].size < size:
             buffers[name] = device.buffer(size, "storage", name)
-
-
-def check_lights(prepared: Prepared, world: np.ndarray, lights: Sequence[object]) -> None:
-    """Lamps do not stand in opaque matter.
-
-    Raises
-    ------
-    SceneError : names the lamp.
-    """
-    if prepared.opaque is None:
-        return
-    inverse = np.linalg.inv(world)
-    half = 0.5 * np.array(prepared.extent_m)
-    size = np.array(prepared.opaque.shape[2::-1])
-    for number, lamp in enumerate(lights):
-        if isinstance(lamp, DirectionalLight):
-            continue
-        position = np.array(lamp.position, dtype=np.float64)  # type: ignore[attr-defined]
-        at = inverse[:3, :3] @ position + inverse[:3, 3]
-        x, y, z = np.floor((at / (2.0 * half) + 0.5) * size).astype(int)
-        if (np.abs(at) < half).all() and prepared.opaque[z, y, x, 3] > 0.5:
-            reason = "lies inside opaque matter of a volume, which lets no light out"
-            raise SceneError(f"scene.lights[{number}].position", reason, "move the lamp or the volume")

@@ -17,9 +17,10 @@ from pellucid.surroundings.charts import Reach
 from pellucid.techniques.eikonal.bodies import Body
 from pellucid.techniques.eikonal.brdf_tables import BrdfTables, spreading
 from pellucid.techniques.eikonal.hulls import Hull, hull_of
+from pellucid.techniques.eikonal.irradiance import check_lights, flux_bound
 from pellucid.techniques.eikonal.joining import Joiner, Placed
 from pellucid.techniques.eikonal.layouts import DrawParams, LookCount, LookRay, VolumeParams
-from pellucid.techniques.eikonal.light import MOST_BODIES, LightSimulator, Lit, check_lights, flux_bound
+from pellucid.techniques.eikonal.light import MOST_BODIES, LightSimulator, Lit
 from pellucid.techniques.eikonal.prepare import Prepared, prepare
 from pellucid.techniques.eikonal.proxies import Box, corners, tight_box, whole_box
 from pellucid.techniques.eikonal.relay import Relay, list_bytes
