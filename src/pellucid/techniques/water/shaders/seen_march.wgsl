@@ -1,11 +1,11 @@
 // Where a ray ends in a picture, by a march through its depth.
 //!import techniques/water/shaders/picture
 
-const MARCH_REFINEMENTS = 5u;
-const MARCH_STRIDE = 1.5;      // texels that a step passes at least
+const MARCH_TRIES = 3u;
+const MARCH_STRIDE = 3.0;      // texels that a step passes at least
 const MARCH_THICKNESS = 0.02;  // of the depth: a ray that is farther behind what is shown has passed behind it
 const MARCH_STEEPENING = 2.0;
-const MARCH_SECANTS = 3u;
+const MARCH_SECANTS = 2u;
 const MARCH_FAR_M = 1e4;
 
 // (x, y, reversed depth) run straight through the picture. Steps look for the first texel in front of the ray; halving
@@ -25,53 +25,54 @@ fn seen_march(layer: u32, p_ws: vec3f, direction_ws: vec3f) -> PicturePlace {
     let texels = length((to_at.xy - from_at.xy) * vec2f(textureDimensions(picture_depths)));
     let steps = clamp(ceil(texels / MARCH_STRIDE), 2.0, f32(water.march_steps));
     let texel = 1.0 / max(texels, 1.0);
-    var low = 0.0;
-    var high = 0.0;
+    let halvings = u32(ceil(log2(max(texels / steps, 1.0)))) + 1u;
+    var ends = vec2f(0.0);  // in front, behind
     var s = 0.0;
-    var passed = false;   // behind something
-    var first = -1.0;     // where it was passed
-    var halvings = 0u;
+    var passed = false;     // behind something
+    var first = -1.0;       // where it was passed
     var found = false;
-    for (var i = 0u; i < 2u * u32(steps) + 3u * MARCH_REFINEMENTS; i++) {
-        let at = mix(from_at, to_at, s);
-        let behind = at.z <= picture_depth(layer, at.xy);
-        if halvings == 0u {
-            if !behind || passed {
-                passed = behind;
-                low = select(s, low, behind);
-                if s >= 1.0 {
-                    break;
-                }
-                s = min(s + 1.0 / steps, 1.0);
-                continue;
-            }
-            high = s;
-        } else {
-            low = select(s, low, behind);
-            high = select(high, s, behind);
-        }
-        halvings++;
-        if halvings > MARCH_REFINEMENTS || high - low < 0.5 * texel {
-            found = march_meets(layer, from_at, to_at, vec2f(low, high), texel);
-            if found {
+    // A software driver executes every branch of a loop for all pixels: so one loop looks, one halves, and what is
+    // rarely done once more is a loop round both.
+    for (var tries = 0u; tries < MARCH_TRIES; tries++) {
+        for (var i = 0u; i <= u32(steps); i++) {
+            let at = mix(from_at, to_at, s);
+            let behind = at.z <= picture_depth(layer, at.xy);
+            if behind && !passed {
                 break;
             }
-            first = select(first, high, first < 0.0);
-            passed = true;
-            halvings = 0u;
-            s = min(high + 1.0 / steps, 1.0);
-            continue;
+            passed = behind;
+            ends.x = select(s, ends.x, behind);
+            if s >= 1.0 {
+                s = 2.0;
+                break;
+            }
+            s = min(s + 1.0 / steps, 1.0);
         }
-        s = 0.5 * (low + high);
+        if s > 1.0 {
+            break;
+        }
+        ends.y = s;
+        for (var i = 0u; i < halvings; i++) {
+            let middle = 0.5 * (ends.x + ends.y);
+            let at = mix(from_at, to_at, middle);
+            let behind = at.z <= picture_depth(layer, at.xy);
+            ends = select(vec2f(middle, ends.y), vec2f(ends.x, middle), behind);
+        }
+        found = march_meets(layer, from_at, to_at, ends, texel);
+        if found {
+            break;
+        }
+        first = select(first, ends.y, first < 0.0);
+        passed = true;
+        s = min(s + 1.0 / steps, 1.0);
     }
+    s = select(select(1.0, first, first >= 0.0), ends.y, found);
     if found {
-        s = march_refined(layer, from_at, to_at, low, high);
-    } else if first >= 0.0 {
-        s = first;
+        s = march_refined(layer, from_at, to_at, ends);
     }
     // Metres are not linear in the picture, their reciprocals are.
     let t = t_end * s * begin.w / mix(end.w, begin.w, s);
-    let nothing = select(PICTURE_UNKNOWN, PICTURE_NOTHING, !passed && reach <= border);
+    let nothing = select(PICTURE_UNKNOWN, PICTURE_NOTHING, first < 0.0 && !passed && reach <= border);
     return PicturePlace(mix(from_at, to_at, s).xy, t, select(nothing, PICTURE_SOMETHING, found));
 }
 
@@ -86,23 +87,27 @@ fn march_meets(layer: u32, from_at: vec3f, to_at: vec3f, ends: vec2f, texel: f32
     return ray - shown <= most + MARCH_STEEPENING * abs(shown - next) || before - ray <= most;
 }
 
-// Secants between four texels each, which the ends need not lie on two sides of; the best place of all
-fn march_refined(layer: u32, from_at: vec3f, to_at: vec3f, low: f32, high: f32) -> f32 {
-    let a = mix(from_at, to_at, low);
-    let b = mix(from_at, to_at, high);
-    var at = vec2f(low, high);
-    var gap = vec2f(a.z - picture_depth_between(layer, a.xy), b.z - picture_depth_between(layer, b.xy));
-    var best = select(vec2f(high, abs(gap.y)), vec2f(low, abs(gap.x)), abs(gap.x) < abs(gap.y));
-    for (var i = 0u; i < MARCH_SECANTS; i++) {
+// Secants between four texels each, which the ends need not lie on two sides of
+fn march_refined(layer: u32, from_at: vec3f, to_at: vec3f, ends: vec2f) -> f32 {
+    let width = max(ends.y - ends.x, 1e-7);
+    var at = ends;
+    var gap = vec2f(march_gap(layer, from_at, to_at, at.x), march_gap(layer, from_at, to_at, at.y));
+    var s = ends.y;
+    for (var i = 1u; i <= MARCH_SECANTS; i++) {
         let slope = gap.x - gap.y;
-        let s = select(high, mix(at.x, at.y, clamp(gap.x / slope, -2.0, 3.0)), abs(slope) > 1e-12);
-        let c = mix(from_at, to_at, s);
-        let found = c.z - picture_depth_between(layer, c.xy);
-        best = select(best, vec2f(s, abs(found)), abs(found) < best.y);
-        at = vec2f(at.y, s);
-        gap = vec2f(gap.y, found);
+        s = select(s, mix(at.x, at.y, gap.x / slope), abs(slope) > 1e-12);
+        s = clamp(s, max(ends.x - width, 0.0), min(ends.y + width, 1.0));
+        if i < MARCH_SECANTS {
+            at = vec2f(at.y, s);
+            gap = vec2f(gap.y, march_gap(layer, from_at, to_at, s));
+        }
     }
-    return clamp(best.x, 0.0, 1.0);
+    return s;
+}
+
+fn march_gap(layer: u32, from_at: vec3f, to_at: vec3f, s: f32) -> f32 {
+    let at = mix(from_at, to_at, s);
+    return at.z - picture_depth_between(layer, at.xy);
 }
 
 // Metres to where all meshes end in height
