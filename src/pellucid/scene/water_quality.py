@@ -130,7 +130,13 @@ _CHOICES = {
 _WHOLE = {"steps": (1, 64), "march_steps": (1, 256), "texture_size": (16, 8192), "caustic_size": (16, 4096)}
 _PRESETS: dict[str, dict[str, Any]] = {
     "best": {},
-    "fast": {"refraction": "march", "reflection": "march", "fallback": "environment", "caustic_size": 256},
+    "fast": {
+        "refraction": "march",
+        "reflection": "march",
+        "march_steps": 8,
+        "fallback": "environment",
+        "caustic_size": 256,
+    },
     "mihalik": {
         "refraction": "iteration",
         "reflection": "point",

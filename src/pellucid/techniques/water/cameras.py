@@ -30,7 +30,7 @@ class Basin:
 
     level_m : of the surface at rest. low, high : (x, z) corners of the rectangle.
     slope : steepest of the waves. n_water, n_outside : indices.
-    bottom_m : height that nothing to be seen in the water lies under.
+    bottom_m, top_m : heights that nothing to be seen in the water lies under, and nothing above it lies over.
     """
 
     level_m: float
@@ -40,6 +40,7 @@ class Basin:
     n_water: float
     n_outside: float
     bottom_m: float
+    top_m: float = np.inf
 
 
 def reflection_camera(view: View, level_m: float) -> View:
@@ -122,7 +123,6 @@ def fitted(view: View, points: Array, widest: float) -> View:
         if not ahead.any():
             return view
         across = np.stack([x[ahead], y[ahead]]) / (1.0 if view.is_orthographic else depth[ahead])
-        across = np.clip(across, -8.0 * widest, 8.0 * widest) if not view.is_orthographic else across
         low, high = across.min(axis=1), across.max(axis=1)
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
         if view.is_orthographic:
@@ -162,10 +162,13 @@ def pictures(view: View, basin: Basin, mode: str, field_of_view: float) -> tuple
         return (mirrored, across) if within else (across, mirrored)
     below, above = _seen_from(points, ways, basin, within)
     widest = field_of_view * max(float(view.half_extent.max()), np.tan(np.radians(30.0)))
-    across = view if within else _turned_to(view, points, basin)
     if within:
-        return fitted(mirrored, below, widest), fitted(across, above, widest) if len(above) else None
-    return fitted(across, below, widest), fitted(mirrored, above, widest)
+        return fitted(mirrored, below, widest), fitted(view, above, widest) if len(above) else None
+    turns = [fitted(across, below, np.inf) for across in _turned_to(view, points, basin)]
+    # The steepest hides least behind what stands on the bottom.
+    fits = [across for across in turns if view.is_orthographic or across.half_extent.max() <= widest]
+    chosen = fits[0] if fits else min(turns, key=lambda across: float(across.half_extent.max()))
+    return fitted(chosen, below, widest), fitted(mirrored, above, widest)
 
 
 def holds(basin: Basin, point: Array) -> bool:
@@ -218,17 +221,22 @@ def _seen_from(points: Array, ways: Array, basin: Basin, within: bool) -> tuple[
         down_from, up_from = (start, start[bent.valid]) if within else (start[bent.valid], start)
         fall = np.maximum(-down[:, 1], 0.05)
         below.append(down_from + down * (max(basin.level_m - basin.bottom_m, 0.0) / fall)[:, None])
-        above.append(up_from + FAR_M * up)
+        rise = max(basin.top_m - basin.level_m, 0.0) / np.maximum(up[:, 1], 0.05)
+        above.append(up_from + up * np.minimum(rise, FAR_M)[:, None])
     return np.concatenate(below), np.concatenate(above[1:])
 
 
-def _turned_to(view: View, points: Array, basin: Basin) -> View:
-    """The camera turned by the ray to the middle of the visible water."""
+def _turned_to(view: View, points: Array, basin: Basin) -> list[View]:
+    """The camera turned by the ray to the middle of the visible water, by that of its lower border, and between them.
+
+    Turned about something far away it stands high, and has what is near below it.
+    """
     right, up, forward = view.axes
     x, y, depth = np.stack([right, up, forward]) @ (points - view.position).T
     across = np.stack([x, y]) if view.is_orthographic else np.stack([x, y]) / np.maximum(depth, 1e-6)
     middle = across.mean(axis=1) / view.half_extent
-    return refraction_camera(view, basin.level_m, basin.n_outside, basin.n_water, (float(middle[0]), float(middle[1])))
+    rays = [(float(share * middle[0]), float(share * (middle[1] + 1.0) - 1.0)) for share in (1.0, 0.5, 0.0)]
+    return [refraction_camera(view, basin.level_m, basin.n_outside, basin.n_water, ray) for ray in rays]
 
 
 def _placed(view: View, axes: Array, position: Array, half: Array) -> View:

@@ -78,7 +78,7 @@ class SurfacePictures:
         kept = self._use_size(size)
         (low, high), slope = waves
         reach = lowest_and_highest(surroundings)
-        basin = basin_of(item, quality, slope, reach[0])
+        basin = basin_of(item, quality, slope, reach)
         wanted = wanted_pictures(quality, surroundings.view, item.level)
         taken = pictures(surroundings.view, basin, quality.cameras, quality.field_of_view)
         self.views = tuple(v if w else None for v, w in zip(taken, wanted, strict=True))  # type: ignore[assignment]
@@ -152,15 +152,15 @@ def lowest_and_highest(surroundings: Surroundings) -> tuple[float, float]:
     return min((float(b[0][1]) for b in bounds), default=0.0), max((float(b[1][1]) for b in bounds), default=0.0)
 
 
-def basin_of(item: Water, quality: WaterQuality, slope: float, lowest_m: float) -> Basin:
+def basin_of(item: Water, quality: WaterQuality, slope: float, reach: tuple[float, float]) -> Basin:
     """What cameras need to know: what is too deep to be seen through the water has no place in the picture."""
     matter = item.matter
     extinction = np.asarray(matter.absorption_rgb_per_m) + np.asarray(matter.scattering_rgb_per_m)
     clear = float(extinction.min()) if quality.color == "physical" else item.clarity_per_m
     sight = -np.log(VISIBILITY) / clear if clear > 0.0 else np.inf
     low, high = item.bounds_m
-    bottom = max(min(lowest_m, item.level), item.level - float(sight))
-    return Basin(item.level, low, high, _in_steps(slope), item.matter.n_d, item.ambient_n, bottom)
+    bottom = max(min(reach[0], item.level), item.level - float(sight))
+    return Basin(item.level, low, high, _in_steps(slope), item.matter.n_d, item.ambient_n, bottom, reach[1])
 
 
 def _in_steps(slope: float) -> float:
