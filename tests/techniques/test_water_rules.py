@@ -79,6 +79,23 @@ def test_what_stands_out_of_the_water_is_cut_at_its_surface(renderer: Renderer) 
     assert above.sum() > 50 and np.array_equal(frame.radiance[above], dry.radiance[above])
 
 
+def test_only_folded_crests_foam(renderer: Renderer) -> None:
+    sea = pl.waves.Ocean(wind_m_s=14.0, tile_m=60.0, shape=(64, 64), seed=5)
+    dark = pl.Environment.constant((0.0, 0.0, 0.0))
+    above = CAMERA.replace(position=(0, 40.0, 0), target=(0, 0, 0), up=(0, 0, -1), far_m=1e3)
+    flat, foamy = (
+        renderer.render(
+            scene(camera=above, environment=dark, objects=[pl.Water(extent_m=60.0, waves=sea, foam=foam)]), size=SIZE
+        )
+        for foam in (0.0, 0.9)
+    )
+    white = np.abs(foamy.radiance - flat.radiance).max(axis=2) > 0.05
+    assert 0.0 < white.mean() < 0.3
+    calm = pl.Water(extent_m=60.0, waves=sines(0.02), foam=0.9)
+    plain = [renderer.render(scene(w, camera=above), size=SIZE).radiance for w in (calm, calm.replace(foam=0.0))]
+    assert plain[0] == pytest.approx(plain[1], rel=1e-5)
+
+
 def test_waters_side_by_side_are_each_as_if_alone(renderer: Renderer) -> None:
     left = pl.Water(extent_m=1.5, center=(-1.0, 0.0), medium="pond")
     right = pl.Water(extent_m=1.5, center=(1.0, 0.0), waves=Still(sines(0.03).heights, (1.5, 1.5)))

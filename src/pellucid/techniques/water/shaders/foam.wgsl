@@ -6,7 +6,7 @@
 override WATER_FOAM: bool = false;
 
 const FOAM_ALBEDO = 0.55;    // of fresh, dense foam [koepke1984]
-const FOAM_SOFTNESS = 0.5;   // of the Jacobian, from no foam to a closed cover
+const FOAM_SOFTNESS = 0.25;  // of the Jacobian, from no foam to a closed cover
 const FOAM_PATCH_M = 0.35;   // size of what a cover tears into
 const FOAM_PI = 3.14159265358979;
 
