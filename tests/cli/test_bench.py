@@ -10,6 +10,8 @@ from types import ModuleType
 import numpy as np
 import pytest
 
+from pellucid.scene import Camera
+
 
 def fake(progress, repeat=3):
     progress(1.0)
@@ -86,3 +88,33 @@ def test_the_relief_suite_prints_its_rows(pellucid, monkeypatch):
     printed = {row["name"]: row for row in json.loads(said.out)["rows"]}
     assert list(printed) == ["base", "lamp_moves"]
     assert printed["base"]["ratio"] == 1.0 and printed["lamp_moves"]["ms"] > 0.0
+
+
+def test_the_water_suite_prints_its_rows(pellucid, monkeypatch):
+    """A small lake, from rays and from pictures of it."""
+    suite = importlib.import_module("pellucid.benchmarks.water")
+    rows = suite._rows()
+    sizes = {f"{name}_textures_{side}" for name in ("lake", "lake_mihalik") for side in (256, 512, 1024)}
+    assert {"lake", "lake_caustics", "lake_mihalik", "lake_mihalik_caustics", "lake_moving_camera"} | sizes <= set(rows)
+    rows["lake_caustics"].quality = rows["lake_caustics"].quality.replace(texture_size=32, caustic_size=32)
+    rows["lake_best"].quality = rows["lake_best"].quality.replace(caustic_size=32)
+    kept = ("lake_dry", "lake_caustics", "lake_best")
+    monkeypatch.setattr(suite, "_rows", lambda: {name: rows[name] for name in kept})
+    monkeypatch.setattr(suite, "GROUND", {"corners": 33, "trees": 1, "texels": 32})
+    monkeypatch.setattr(suite, "SIZE", (32, 24))
+    said = pellucid("bench", "water", "--json", "--repeat", "1")
+    assert said.code == 0, said.err
+    printed = {row["name"]: row for row in json.loads(said.out)["rows"]}
+    assert tuple(printed) == kept and printed["lake_dry"]["ratio"] == 1.0
+    for row in printed.values():
+        assert row["fps"] > 0.0 and sum(row["passes"].values()) == pytest.approx(row["ms"], rel=0.5)
+    assert printed["lake_caustics"]["error"] > 0.0 and printed["lake_best"]["error"] is None
+    assert "water shade" in printed["lake_best"]["passes"]
+
+
+def test_a_camera_that_flies_is_never_at_rest():
+    suite = importlib.import_module("pellucid.benchmarks.water")
+    rows = suite._rows()
+    assert {name for name, row in rows.items() if row.flies} == {name for name in rows if "moving_camera" in name}
+    camera = Camera((1.5, 1.6, 20.5), (-0.5, 0.45, 8.0))
+    assert len({suite._flown(camera, k).position for k in range(suite.WARM_UP + suite.FRAMES)}) == 7

@@ -11,5 +11,11 @@ from typing import Any
 from pellucid.benchmarks.eikonal import eikonal
 from pellucid.benchmarks.light import light
 from pellucid.benchmarks.relief import relief
+from pellucid.benchmarks.water import water
 
-SUITES: dict[str, Callable[..., dict[str, Any]]] = {"eikonal": eikonal, "light": light, "relief": relief}
+SUITES: dict[str, Callable[..., dict[str, Any]]] = {
+    "eikonal": eikonal,
+    "light": light,
+    "relief": relief,
+    "water": water,
+}
