@@ -122,7 +122,7 @@ _add(
 )
 _add(media, "pellucid media", "pellucid media N-BK7")
 _add(doctor, "pellucid doctor")
-_add(bench, "pellucid bench", "pellucid bench eikonal --json > eikonal.json")
+_add(bench, "pellucid bench", "pellucid bench eikonal --json > eikonal.json", "pellucid bench water --repeat 1")
 
 
 def run() -> None:

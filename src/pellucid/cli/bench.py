@@ -15,7 +15,9 @@ from pellucid.errors import PellucidError, SceneError
 
 
 def bench(
-    suite: Annotated[str, typer.Argument(metavar="[SUITE]", help="What to time.")] = "eikonal",
+    suite: Annotated[
+        str, typer.Argument(metavar="[SUITE]", help="What to time: eikonal, light, relief, or water.")
+    ] = "eikonal",
     as_json: Annotated[bool, typer.Option("--json", help="Only JSON on standard output, for other programs.")] = False,
     repeat: Annotated[int | None, typer.Option(min=1, max=1000, help="Runs of which the median counts.")] = None,
 ) -> None:
