@@ -5,6 +5,9 @@ chance, since no place under water can be connected to it: the lamp is therefore
 has it as `DirectionalLight(angular_radius_deg=...)`. The sky is even, and what stands in it is dark, since Pellucid
 does not follow light from one matt surface to another.
 
+A lamp as wide as this blurs its caustics by more than the few texels that one map spreads a photon over. So there is a
+picture with the lamp in 32 parts, one sample each, beside that of one wide lamp.
+
 Run ``python tools/compare_mitsuba_pool.py --output out/mitsuba_pool`` (needs the extra `compare`). It writes both
 pictures, the differences, `comparison.json`, and prints a table. FLIP as in ``compare_povray.py``.
 """
@@ -20,11 +23,12 @@ import numpy as np
 from compare_mitsuba_relief import Image, timed
 from compare_povray import compare, srgb, write_image
 
+RIM_M = 1.2  # ground around the pool
 SIZE_M, DEPTH_M, CELLS = (2.4, 1.8), 0.7, (192, 256)  # x and z; (rows, columns)
 N = 1.333
-SKY = 0.5  # radiance
+SKY = 0.12  # radiance
 TO_LAMP, IRRADIANCE, LAMP_DISTANCE_M = (0.45, 1.0, 0.3), 3.0, 100.0
-CAMERA, TARGET, FOV_DEG = (0.15, 1.75, 2.0), (0.0, -0.3, 0.05), 40.0
+CAMERA, TARGET, FOV_DEG = (0.15, 1.9, 1.9), (0.0, -0.3, 0.05), 38.0
 BALL_M, BALL_AT = 0.22, (0.3, -0.05, 0.15)
 SUNK_AT = (-0.55, -0.48, -0.3)
 WALL, FLOOR, BALL, SUNK = (
@@ -56,12 +60,17 @@ def pool_meshes() -> list[Any]:
     import pellucid as pl
     from pellucid.gallery.waters import paved
 
-    x, z, low, high = 0.5 * SIZE_M[0], 0.5 * SIZE_M[1], -DEPTH_M, 0.08
+    x, z, low, high = 0.5 * SIZE_M[0], 0.5 * SIZE_M[1], -DEPTH_M, 0.06
+    far_x, far_z = x + RIM_M, z + RIM_M
     walls = [
         [(-x, low, -z), (x, low, -z), (-x, high, -z)],
         [(x, low, z), (-x, low, z), (x, high, z)],
         [(-x, low, z), (-x, low, -z), (-x, high, z)],
         [(x, low, -z), (x, low, z), (x, high, -z)],
+        [(-far_x, high, -z), (far_x, high, -z), (-far_x, high, -far_z)],
+        [(-far_x, high, far_z), (far_x, high, far_z), (-far_x, high, z)],
+        [(-far_x, high, z), (-x, high, z), (-far_x, high, -z)],
+        [(x, high, z), (far_x, high, z), (x, high, -z)],
     ]
     plain = np.ones((1, 1, 3), np.float32)
     matt: dict[str, Any] = {"specular": 0.0, "roughness": 1.0}
@@ -149,31 +158,46 @@ def mitsuba_picture(size: tuple[int, int], samples: int, lamp_radius_deg: float)
     return np.array(mi.render(mi.load_dict(scene)), dtype=np.float32)
 
 
-def pellucid_scene(lamp_radius_deg: float, caustics: str) -> Any:
-    """The same for Pellucid."""
+def pellucid_scene(towards: Any, lamp_radius_deg: float, caustics: str) -> Any:
+    """The same for Pellucid, with the middle of the lamp in that direction."""
     import pellucid as pl
 
-    way = tuple(float(-c) for c in TO_LAMP)
+    way = tuple(float(-c) for c in towards)
     lamp = pl.DirectionalLight(way, irradiance=IRRADIANCE, angular_radius_deg=lamp_radius_deg)  # type: ignore[arg-type]
     water = pl.Water(extent_m=SIZE_M, waves=waves(), medium=N, quality=pl.WaterQuality(caustics=caustics))
     camera = pl.Camera(position=CAMERA, target=TARGET, fov_deg=FOV_DEG)
     return pl.Scene(camera, pl.Environment.constant(SKY), [lamp], [*pool_meshes(), water], tone_mapping="linear")
 
 
-def pellucid_picture(size: tuple[int, int], samples: int, lamp_radius_deg: float, caustics: str) -> Image:
-    """(H, W, 3) radiance."""
+def parts_of_lamp(count: int, radius_deg: float) -> Image:
+    """(count, 3) unit directions, evenly over the disc: a spiral by the golden angle."""
+    middle = np.asarray(TO_LAMP) / np.linalg.norm(TO_LAMP)
+    aside = np.cross(middle, (0.0, 0.0, 1.0))
+    aside /= np.linalg.norm(aside)
+    k = np.arange(count) + 0.5
+    reach, turn = np.tan(np.radians(radius_deg)) * np.sqrt(k / count), k * np.pi * (3.0 - np.sqrt(5.0))
+    there = middle + (reach * np.cos(turn))[:, None] * aside + (reach * np.sin(turn))[:, None] * np.cross(middle, aside)
+    return np.asarray(there / np.linalg.norm(there, axis=1, keepdims=True))
+
+
+def pellucid_picture(size: tuple[int, int], samples: int, lamp_radius_deg: float, caustics: str, parts: int) -> Image:
+    """(H, W, 3) radiance: the mean of pictures with the lamp in so many parts."""
     import pellucid as pl
 
-    scene = pellucid_scene(lamp_radius_deg, caustics)
-    return np.asarray(pl.render(scene, size=size, samples=samples).radiance, dtype=np.float32)
+    radius = lamp_radius_deg if parts == 1 else lamp_radius_deg / np.sqrt(parts)
+    total = np.zeros((size[1], size[0], 3))
+    for towards in parts_of_lamp(parts, lamp_radius_deg if parts > 1 else 0.0):
+        scene = pellucid_scene(towards, radius, caustics)
+        total += pl.render(scene, size=size, samples=max(samples // parts, 1)).radiance
+    return np.asarray(total / parts, dtype=np.float32)
 
 
 def main() -> None:
     """Render, compare, write, print."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0])
     parser.add_argument("--output", type=Path, default=Path("out/mitsuba_pool"))
-    parser.add_argument("--size", type=int, nargs=2, default=(160, 120), metavar=("WIDTH", "HEIGHT"))
-    parser.add_argument("--samples", type=int, nargs=2, default=(4096, 16), help="of Mitsuba, of Pellucid")
+    parser.add_argument("--size", type=int, nargs=2, default=(96, 72), metavar=("WIDTH", "HEIGHT"))
+    parser.add_argument("--samples", type=int, nargs=2, default=(6000, 32), help="of Mitsuba, of Pellucid")
     parser.add_argument("--lamp", type=float, default=6.0, help="radius of the lamp, degrees")
     parser.add_argument("--keep", action="store_true", help="take Mitsuba's picture from the last run")
     options = parser.parse_args()

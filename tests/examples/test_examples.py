@@ -122,3 +122,15 @@ def test_sheets_refract_and_show_where_they_err(tmp_path: Path) -> None:
     article, exact, error = (read_image(made[name][1]) for name in ("article", "exact", "error"))
     assert 0.001 < np.abs(article - exact).mean() < 0.1
     assert error.std() > 0.05
+
+
+def test_a_pool_and_a_day_at_the_lake_move_and_go_on(tmp_path: Path) -> None:
+    made = run(12, tmp_path, size=(32, 24), samples=1, frames=2, corners=33)
+    assert {name: len(paths) for name, paths in made.items()} == {"pool": 2, "day": 2}
+    assert (tmp_path / "lake.mtl").exists()
+    for first, second in made.values():
+        assert first.read_bytes() != second.read_bytes()
+    made["pool"][1].unlink()
+    kept = made["pool"][0].stat().st_mtime_ns
+    run(12, tmp_path, size=(32, 24), samples=1, frames=2, corners=33)
+    assert made["pool"][1].exists() and made["pool"][0].stat().st_mtime_ns == kept

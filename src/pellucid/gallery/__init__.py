@@ -13,6 +13,7 @@ from . import (
     sheet,
     solids,
     table,
+    waters,
 )
 from .picture import Picture
 
@@ -30,6 +31,7 @@ PICTURES: tuple[Picture, ...] = (
     *relief_rain.PICTURES,
     *relief_views.PICTURES,
     *sheet.PICTURES,
+    *waters.PICTURES,
 )
 
 __all__ = ["PICTURES", "Picture"]

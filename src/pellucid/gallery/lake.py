@@ -83,11 +83,29 @@ def lake_scene(
 
 
 def underwater_window(
-    waves: Any = None, sun: Sequence[float] = (48.0, 150.0), camera: Camera | None = None, **water: Any
+    waves: Any = None, sun: Sequence[float] = (62.0, 20.0), camera: Camera | None = None, **water: Any
 ) -> Scene:
     """The lake seen by a diver who looks up: the whole sky in a window, and the bed of the lake mirrored around it."""
-    scene = lake_scene(waves, camera or Camera((0.0, -2.4, 6.0), (0.0, 0.0, 5.0), fov_deg=104.0), sun, **water)
-    return scene.replace(exposure=1.4)
+    scene = lake_scene(waves, camera or Camera((0.0, -2.3, 9.0), (0.0, 0.0, 7.6), fov_deg=100.0), sun, **water)
+    hull = boat()
+    afloat = Mesh(hull.vertices, hull.faces, base_color=(0.30, 0.13, 0.05), roughness=0.5, rotation=(0.0, -25.0, 0.0),
+                  position=(-1.1, 0.08, 7.0))  # fmt: skip
+    return scene.replace(objects=[*scene.objects, afloat], exposure=1.2)
+
+
+def boat(length_m: float = 3.4, width_m: float = 1.2, depth_m: float = 0.55, stations: int = 33) -> Patch:
+    """The hull of a rowing boat along x about the origin, its rim a third of its depth above y = 0."""
+    at = np.linspace(-1.0, 1.0, stations)
+    around = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 17)
+    x, turn = np.meshgrid(at, around, indexing="ij")
+    wide = 0.5 * width_m * (1.0 - x**2) ** 0.75
+    deep = depth_m * (1.0 - x**4) ** 0.5
+    rim = depth_m * (0.33 + 0.3 * x**2)
+    vertices = np.stack([0.5 * length_m * x, rim - deep * np.cos(turn), wide * np.sin(turn)], axis=-1)
+    k = np.arange(x.size).reshape(x.shape)
+    a, b, c, d = (part.ravel() for part in (k[:-1, :-1], k[1:, :-1], k[:-1, 1:], k[1:, 1:]))
+    faces = np.concatenate([np.stack([a, b, c], 1), np.stack([b, d, c], 1)])
+    return Patch(vertices.reshape(-1, 3), faces.astype(np.int32))
 
 
 def _normals(patch: Patch) -> np.ndarray:

@@ -11,7 +11,8 @@ import numpy.typing as npt
 from pellucid.fields import Ripples, landscape, textures
 from pellucid.fields.landscape import Ground
 from pellucid.fields.waves import Ocean
-from pellucid.scene import Camera, DirectionalLight, Environment, Mesh, Scene, Water
+from pellucid.scene import Camera, Environment, Mesh, Scene, Water
+from pellucid.scene.shapes import vertex_normals
 
 from . import stage
 from .lake import lake_scene, underwater_window
@@ -123,9 +124,16 @@ def pond_ground(corners: int = 129, seed: int = 9) -> tuple[Ground, list[Mesh]]:
     """A garden pond of 4 m in a meadow: its ground, stones around it, reeds."""
     ground = landscape.lake_basin(corners, seed, 8.0, (2.1, 1.7), 0.7, 0.8)
     rng = np.random.default_rng(seed)
-    soil = ground.patch()
-    earth = Mesh(soil.vertices, soil.faces, uvs=ground.uvs(), base_color=(1.0, 1.0, 1.0),
-                 base_color_map=_bed(ground), roughness=0.95, specular=0.01)  # fmt: skip
+    soil, uvs = ground.patch(), ground.uvs() * ground.size_m
+    dry = soil.vertices[soil.faces, 1].mean(axis=1) > 0.09
+    pebbles = textures.cobbles(512, 5, tile_m=1.0, stone_m=0.055, relief_m=0.01, gap_m=0.004,
+                               stone_color=(0.24, 0.20, 0.15))  # fmt: skip
+    up = vertex_normals(soil.vertices, soil.faces)
+    look: dict[str, Any] = {"base_color": (1.0, 1.0, 1.0), "roughness": 0.95, "specular": 0.01}
+    bed, meadow = (
+        Mesh(soil.vertices, soil.faces[which], up, uvs, base_color_map=picture, **look)
+        for which, picture in ((~dry, np.asarray(pebbles.colors)), (dry, _grass()))
+    )
     stones: list[landscape.Patch] = []
     clumps: list[landscape.Patch] = []
     while len(stones) < 60:
@@ -142,23 +150,18 @@ def pond_ground(corners: int = 129, seed: int = 9) -> tuple[Ground, list[Mesh]]:
             clumps.append(landscape.reeds(46, 0.95, 0.22, int(rng.integers(99))).placed((x, height, z)))
     rocks, blades = landscape.joined(stones), landscape.joined(clumps)
     return ground, [
-        earth,
+        bed,
+        meadow,
         Mesh(rocks.vertices, rocks.faces, base_color=(0.24, 0.235, 0.225), roughness=0.7),
         Mesh(blades.vertices, blades.faces, base_color=(0.10, 0.17, 0.035), roughness=0.7),
     ]
 
 
-def _bed(ground: Ground) -> npt.NDArray[np.float32]:
-    """Mud and gravel below the water, wet at its edge, a meadow above."""
-    texels = 768
-    at = (np.arange(texels) + 0.5) / texels - 0.5
-    z, x = np.meshgrid(at * ground.size_m, at * ground.size_m, indexing="ij")
-    height = ground.height(x, z)
-    coarse, fine = stage.noise((texels, texels), (12.0, 12.0), 3), stage.noise((texels, texels), (1.6, 1.6), 4)
-    meadow = np.clip((height + 0.02 * coarse - 0.07) / 0.08, 0.0, 1.0)[..., None]
-    gravel = np.array((0.21, 0.175, 0.125)) * (1.0 + 0.22 * fine + 0.12 * coarse)[..., None]
-    grass = np.array((0.06, 0.11, 0.022)) * (1.0 + 0.3 * fine + 0.2 * coarse)[..., None]
-    return np.clip(gravel + meadow * (grass - gravel), 0.0, 1.0).astype(np.float32)
+def _grass(texels: int = 512) -> npt.NDArray[np.float32]:
+    """A meadow from above, one metre of it."""
+    coarse, fine = stage.noise((texels, texels), (40.0, 40.0), 3), stage.noise((texels, texels), (5.0, 1.2), 4)
+    green = np.array((0.055, 0.10, 0.02)) * (1.0 + 0.35 * fine + 0.25 * coarse)[..., None]
+    return np.clip(green, 0.0, 1.0).astype(np.float32)
 
 
 def rain(side_m: float, seconds: float, drops_a_second: float, cells: int = 320, seed: int = 2) -> Ripples:
@@ -167,20 +170,26 @@ def rain(side_m: float, seconds: float, drops_a_second: float, cells: int = 320,
     rng = np.random.default_rng(seed)
     for _ in range(round(seconds * drops_a_second)):
         x, z = rng.uniform(-0.48, 0.48, 2) * side_m
-        radius = max(float(rng.uniform(0.03, 0.045)), 1.05 * side_m / cells)
-        water.drop(float(x), float(z), radius, float(rng.uniform(0.02, 0.045)), float(rng.uniform(0.0, seconds)))
+        radius = max(float(rng.uniform(0.03, 0.05)), 1.05 * side_m / cells)
+        water.drop(float(x), float(z), radius, float(rng.uniform(0.03, 0.06)), float(rng.uniform(0.0, seconds)))
     return water
+
+
+def overcast(zenith: float = 1.0) -> Environment:
+    """A grey sky, three times as bright overhead as at the horizon [moon1942], over a meadow."""
+    sine = np.sin(np.radians(90.0 - 180.0 * (np.arange(64) + 0.5) / 64))[:, None, None]
+    grey = zenith * (1.0 + 2.0 * np.maximum(sine, 0.0)) / 3.0 * np.array((0.92, 0.98, 1.06))
+    ground = zenith * np.array((0.05, 0.07, 0.03))
+    return Environment(np.where(sine > 0.0, grey, ground).repeat(128, axis=1).astype(np.float32))
 
 
 def rain_on_pond(camera: Camera | None = None, seconds: float = 6.0, **water: Any) -> Scene:
     """A garden pond under an overcast sky while it rains, for so many seconds."""
     _, meshes = pond_ground()
-    sky = Environment.sky(32.0, -120.0, 9.0, sun_disc=False)
-    lamp = DirectionalLight.sun(32.0, -120.0, 9.0).replace(angular_radius_deg=6.0)
-    pond = _water({"extent_m": 6.4, "waves": rain(6.4, seconds, 18.0), "medium": "lake"}, water)
+    pond = _water({"extent_m": 6.4, "waves": rain(6.4, seconds, 30.0), "medium": "lake"}, water)
     return Scene(
-        camera or Camera((0.4, 0.85, 3.0), (0.0, -0.05, 0.0), fov_deg=40.0, near_m=0.05),
-        sky, [lamp.replace(irradiance=0.35 * lamp.irradiance)], [*meshes, pond], exposure=1.3, tone_mapping="khronos",
+        camera or Camera((0.4, 0.75, 2.7), (0.0, -0.08, 0.2), fov_deg=40.0, near_m=0.05),
+        overcast(), [], [*meshes, pond], exposure=1.9, tone_mapping="khronos",
     )  # fmt: skip
 
 
@@ -222,9 +231,9 @@ def sunset_sea(
     )  # fmt: skip
 
 
-def lake_waves(wind_m_s: float = 1.6) -> Ocean:
-    """What a breeze makes of a lake."""
-    return Ocean(wind_m_s, 30.0, tile_m=12.0, shape=(256, 256), fetch_m=200.0, seed=3)
+def lake_waves(amplitude: float = 0.35) -> Ocean:
+    """What a breeze makes of a lake in some minutes."""
+    return Ocean(1.8, 30.0, tile_m=12.0, shape=(256, 256), fetch_m=250.0, amplitude=amplitude, seed=3)
 
 
 PICTURES = (
@@ -255,8 +264,8 @@ PICTURES = (
     Picture(
         "water-window",
         "Diver's window",
-        "Looking up from the lake: all of the sky in a bright round window, whose edge the waves tear, with the shore "
-        "drawn together at its rim; outside of it the surface mirrors the bed of the lake.",
+        "Looking up from the lake: all of the sky in a bright round window, whose edge the waves tear, with a boat in "
+        "it and a glow around the sun; outside of it the surface mirrors the dark of the lake.",
         lambda: underwater_window(lake_waves()),
         3,
     ),
