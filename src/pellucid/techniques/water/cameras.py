@@ -21,7 +21,7 @@ UP = np.array([0.0, 1.0, 0.0])
 FAR_M = 1e4  # stands for infinitely far away
 GRID = 17  # rays a side of a picture that ask where it shows water
 STEEPEST = 0.35  # slope; what steeper waves turn out of the pictures is found otherwise
-MARGIN = 1.05
+MARGIN = 1.12  # points of waves lie beside those of the level
 
 
 @dataclass(frozen=True)
