@@ -6,7 +6,7 @@ has it as `DirectionalLight(angular_radius_deg=...)`. The sky is even, and what 
 does not follow light from one matt surface to another.
 
 A lamp as wide as this blurs its caustics by more than the few texels that one map spreads a photon over. So there is a
-picture with the lamp in 32 parts, one sample each, beside that of one wide lamp.
+picture with the lamp in 32 parts beside that of one wide lamp.
 
 Run ``python tools/compare_mitsuba_pool.py --output out/mitsuba_pool`` (needs the extra `compare`). It writes both
 pictures, the differences, `comparison.json`, and prints a table. FLIP as in ``compare_povray.py``.
@@ -197,7 +197,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0])
     parser.add_argument("--output", type=Path, default=Path("out/mitsuba_pool"))
     parser.add_argument("--size", type=int, nargs=2, default=(96, 72), metavar=("WIDTH", "HEIGHT"))
-    parser.add_argument("--samples", type=int, nargs=2, default=(6000, 32), help="of Mitsuba, of Pellucid")
+    parser.add_argument("--samples", type=int, nargs=2, default=(6000, 128), help="of Mitsuba, of Pellucid")
     parser.add_argument("--lamp", type=float, default=6.0, help="radius of the lamp, degrees")
     parser.add_argument("--keep", action="store_true", help="take Mitsuba's picture from the last run")
     options = parser.parse_args()
@@ -213,11 +213,13 @@ def main() -> None:
     rows: list[dict[str, Any]] = [{"name": "mitsuba", "seconds": seconds, "mean": theirs.mean((0, 1)).tolist()}]
     print("| picture | FLIP | of Mitsuba's mean | processor seconds |\n|---|---|---|---|")
     print(f"| mitsuba | | | {seconds:.1f} |")
-    for name, caustics in (("pellucid", "gpu"), ("pellucid_no_caustics", "none")):
-        pellucid_picture(size, 1, options.lamp, caustics)  # the warm-up
+    for name, caustics, parts in (("pellucid", "gpu", 32), ("one_lamp", "gpu", 1), ("no_caustics", "none", 1)):
+        pellucid_picture(size, 1, options.lamp, caustics, 1)  # the warm-up
         ours, seconds = timed(
-            lambda caustics=caustics: pellucid_picture(size, options.samples[1], options.lamp, caustics)
-        )  # type: ignore[misc]
+            lambda caustics=caustics, parts=parts: pellucid_picture(  # type: ignore[misc]
+                size, options.samples[1], options.lamp, caustics, parts
+            )
+        )
         row = {"name": name, "seconds": seconds, "mean": ours.mean((0, 1)).tolist()}
         rows.append(row | compare(theirs, ours, name, folder))
         print(f"| {name} | {rows[-1]['flip']:.4f} | {ours.mean((0, 1)) / theirs.mean((0, 1))} | {seconds:.1f} |")

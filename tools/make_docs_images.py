@@ -5,8 +5,8 @@ docs/images/gallery/NAME.jpg (400 x 300) and docs/images/demo.jpg, the sheet of 
 ``--comparison out/povray`` also the pictures of ``tools/compare_povray.py`` that docs/truth.md shows, and with
 ``--light out/light`` those of ``tools/light_pictures.py`` that docs/light.md shows, with ``--relief out/relief`` those
 of ``tools/relief_pictures.py``, with ``--sheet out/sheet`` those of ``tools/sheet_pictures.py``, with ``--mitsuba
-out/mitsuba_relief`` those of ``tools/compare_mitsuba_relief.py``.
-Without a folder, only the latter.
+out/mitsuba_relief`` those of ``tools/compare_mitsuba_relief.py``, with ``--pool out/mitsuba_pool`` those of
+``tools/compare_mitsuba_pool.py``. Without a folder, only the latter.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ SHEET_WIDTH = 960
 LIGHT = {"fluence": (288, 384), "intensity": (288, 384), "caustic": (512, 384)}
 RELIEF = {"example": (640, 480), "steps": (1280, 480)}
 SHEET = {"example": (480, 360), "errors": (880, 300)}
+POOL = ("mitsuba", "pellucid", "one_lamp", "pellucid_difference_x4", "one_lamp_difference_x4")
 LAYERS = ("mitsuba", "pellucid", "pellucid_caustics", "pellucid_difference_x4", "pellucid_caustics_difference_x4")
 COMPARED = ("povray", "sharp", "smooth", "sharp_difference_x4", "smooth_difference_x4")
 
@@ -59,6 +60,7 @@ def main() -> None:
     parser.add_argument("--relief", type=Path, help="folder that tools/relief_pictures.py wrote")
     parser.add_argument("--sheet", type=Path, help="folder that tools/sheet_pictures.py wrote")
     parser.add_argument("--mitsuba", type=Path, help="folder that tools/compare_mitsuba_relief.py wrote")
+    parser.add_argument("--pool", type=Path, help="folder that tools/compare_mitsuba_pool.py wrote")
     options = parser.parse_args()
     if options.demo:
         write_gallery(options.demo)
@@ -72,6 +74,8 @@ def main() -> None:
         write_jpeg(options.sheet / f"{name}.png", DOCS / "sheet" / f"{name}.jpg", size, 82)
     for name in LAYERS if options.mitsuba else ():
         write_jpeg(options.mitsuba / f"{name}.png", DOCS / "relief" / f"{name}.jpg", (320, 240), 85)
+    for name in POOL if options.pool else ():
+        write_jpeg(options.pool / f"{name}.png", DOCS / "water" / f"{name}.jpg", (288, 216), 85)
 
 
 if __name__ == "__main__":
