@@ -247,6 +247,15 @@ PICTURES = (
         2.4,
     ),
     Picture(
+        "water-below",
+        "Pool from below",
+        "Bright lines over floor and walls, and over the ball that lies there; the surface mirrors them. Through its "
+        "window there is the sky, and the upper half of the floating ball, torn off from the lower one.",
+        lambda: pool_scene(Camera((0.0, -0.8, 1.6), (0.6, -0.4, -1.0), fov_deg=80.0)),
+        3,
+        2.4,
+    ),
+    Picture(
         "water-lake",
         "Lake",
         "Hills and spruces are mirrored in a lake, broken by small waves; near the shore a boulder and the sand are "
