@@ -15,7 +15,6 @@ from pellucid.fields.numbers import number
 
 Values = npt.NDArray[np.float64]
 Texels = npt.NDArray[np.float32]
-Color = tuple[float, float, float]
 LARGEST = 4096
 
 

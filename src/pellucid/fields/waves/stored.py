@@ -118,7 +118,7 @@ def _built(plain: Mapping[str, Any], prefix: str, arrays: Arrays) -> WaveSource:
     return MAKERS[kind](given, lambda name: _array(arrays, f"{prefix}{name}"))
 
 
-def _ripples(given: dict[str, Any], array: Callable[[str], np.ndarray]) -> Ripples:
+def _ripples(given: dict[str, Any]) -> Ripples:
     drops, pushes = given.pop("drops", ()), given.pop("pushes", ())
     _needed("ripples", given, "shape", "cell_m")
     ripples = Ripples(**given)
@@ -146,7 +146,7 @@ MAKERS: dict[str, Callable[[dict[str, Any], Callable[[str], np.ndarray]], WaveSo
     "sine": lambda given, _: Sine(**given),
     "gerstner": lambda given, _: Gerstner(**given),
     "ocean": lambda given, _: Ocean(**given),
-    "ripples": _ripples,
+    "ripples": lambda given, _: _ripples(given),
     "heights": _heights,
     "mesh": _mesh,
 }

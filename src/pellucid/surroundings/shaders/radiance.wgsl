@@ -5,7 +5,7 @@
 fn radiance_along(origin_ws: vec3f, direction_ws: vec3f) -> vec3f {
     let hit = trace_opaque(origin_ws, direction_ws, 1e30);
     if hit.valid {
-        return shade_hit(hit, origin_ws, direction_ws);
+        return shade_hit(hit, direction_ws);
     }
     return environment_radiance(normalize(direction_ws));
 }

@@ -108,7 +108,7 @@ fn base_color(material: u32, uv: vec2f, p_ws: vec3f, n_dot_v: f32) -> vec3f {
 }
 
 // Radiance back along a ray from where it hit
-fn shade_hit(hit: SurfaceHit, origin_ws: vec3f, direction_ws: vec3f) -> vec3f {
+fn shade_hit(hit: SurfaceHit, direction_ws: vec3f) -> vec3f {
     let view_ws = -normalize(direction_ws);
     let surface = surface_at(hit.triangle, hit.barycentric, view_ws);
     return shade_surface(surface, hit.triangle, view_ws);

@@ -11,5 +11,5 @@ fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let found = triangle_plane_entry(triangle, ray.origin, ray.direction);
     let u = saturate(found.y);
     let hit = SurfaceHit(found.x, true, triangle, vec2f(u, clamp(found.z, 0.0, 1.0 - u)));
-    return vec4f(shade_hit(hit, ray.origin, ray.direction), 1.0);
+    return vec4f(shade_hit(hit, ray.direction), 1.0);
 }

@@ -1,5 +1,4 @@
 // Lamps near by over level water: the way of least time from lamp to point, and how the surface spreads its light.
-//!import surroundings/shaders/submersion
 
 const LEAST_TIME_STEPS = 6;
 

@@ -1,4 +1,5 @@
 // Which triangle each pixel shows, and how deep.
+//!import surroundings/shaders/surface
 //!import surroundings/shaders/visible_corner
 
 struct VisibilityVarying {

@@ -1,4 +1,5 @@
 // Which triangle each pixel shows, and how deep, of what lies on one side of a plane.
+//!import surroundings/shaders/surface
 //!import surroundings/shaders/visible_corner
 
 @group(0) @binding(0) var<uniform> clip_plane: vec4f;  // kept is where dot(clip_plane, (p, 1)) >= 0

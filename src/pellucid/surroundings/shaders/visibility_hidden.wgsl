@@ -1,4 +1,5 @@
 // Which triangle each pixel shows, and how deep, of what lies outside of a box whose faces something else covers.
+//!import surroundings/shaders/surface
 //!import surroundings/shaders/visible_corner
 
 struct HiddenBox {

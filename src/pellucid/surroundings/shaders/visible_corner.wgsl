@@ -1,6 +1,5 @@
 // Where the corners of the triangles lie in a view. Vertices come from the buffers that rays use.
 //!import surroundings/shaders/camera
-//!import surroundings/shaders/surface
 
 override CULL_BACK_FACES: bool = false;  // of all meshes, not only of single-sided ones
 override STAND_INS: bool = false;        // whether what only rays meet is shown

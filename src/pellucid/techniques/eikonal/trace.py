@@ -77,7 +77,7 @@ def trace(
     d_os = d @ (inverse[:3, :3].T * scale)
     out = _run(device, prepared, quality, params, textures.channels[row], x_os, d_os, mode)
     # The deviation comes back apart from what it deviates from, so that 32 bits carry deflections of 1e-6.
-    p = _base(out, d_os, prepared.ambient_n) + out["momentum"].astype(np.float64)
+    p = _base(out, d_os) + out["momentum"].astype(np.float64)
     index = np.linalg.norm(p, axis=1)
     missed = out["status"] == 0
     position = out["position"].astype(np.float64) @ world[:3, :3].T + world[:3, 3]
@@ -92,7 +92,7 @@ def trace(
     )
 
 
-def _base(out: np.ndarray, d: np.ndarray, ambient_n: float) -> np.ndarray:
+def _base(out: np.ndarray, d: np.ndarray) -> np.ndarray:
     """The momentum that deviations count from: where it is still the start's, its 64-bit form."""
     base = out["base"].astype(np.float64)
     length = np.linalg.norm(base, axis=1, keepdims=True)

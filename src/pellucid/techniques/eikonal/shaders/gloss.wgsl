@@ -104,7 +104,7 @@ fn radiance_in_lobe(lobe: Lobe, p_ws: vec3f) -> vec3f {
         let l = 2.0 * dot(lobe.v, h) * h - lobe.v;
         let way = select(mirrored, l, dot(l, lobe.n) > 0.0);
         let hit = trace_opaque(p_ws + lobe.n * frame.ray_epsilon_m, way, 1e30);
-        if (hit.valid) { seen = shade_hit(hit, p_ws, way); }
+        if (hit.valid) { seen = shade_hit(hit, way); }
     }
     if (lobe.table == 0u) { return seen; }
     let matt = table_matt_albedo(lobe.table) * environment_irradiance(lobe.n) / GGX_PI;

@@ -13,7 +13,7 @@ fn relief_outside(origin_ws: vec3f, direction_ws: vec3f, alpha: f32) -> vec3f {
     if RELIEF_RAYS {
         let hit = trace_opaque(origin_ws, direction_ws, 1e30);
         if hit.valid {
-            return shade_hit(hit, origin_ws, direction_ws);
+            return shade_hit(hit, direction_ws);
         }
     }
     return environment_glossy(direction_ws, alpha);

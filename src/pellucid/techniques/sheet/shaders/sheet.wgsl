@@ -80,7 +80,7 @@ fn sheet_along(p_ws: vec3f, look: SheetLook, uv: vec2f, lod: f32, sphere_uv: vec
         let hit = trace_opaque(p_ws, direction_ws, select(0.0, select(sheet.scale * look.hit.path, 1e30, outside), meets));
         met = hit.valid;
         if met {
-            radiance = shade_hit(hit, p_ws, direction_ws);
+            radiance = shade_hit(hit, direction_ws);
             way_m = hit.t;
         }
     }

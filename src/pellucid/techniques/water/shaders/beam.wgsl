@@ -1,5 +1,4 @@
 // A parallel beam that weakens with the depth, scattered once into a straight way.
-//!import techniques/water/shaders/bindings
 
 struct WaterBeam {
     scattered: vec3f,  // radiance that a metre of the way gains just below the surface

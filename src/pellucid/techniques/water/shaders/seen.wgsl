@@ -11,15 +11,7 @@ override WATER_FALLBACK: u32 = 0u;    // water_quality.FALLBACKS
 
 const SEEN_BY_RAYS = 0u;
 
-fn seen_below(p_ws: vec3f, direction_ws: vec3f) -> Seen {
-    return seen_along(p_ws, direction_ws, true);
-}
-
-fn seen_above(p_ws: vec3f, direction_ws: vec3f) -> Seen {
-    return seen_along(p_ws, direction_ws, false);
-}
-
-// Either of them, each way of looking in one place: a software driver executes all of them for all pixels.
+// Either side, each way of looking in one place: a software driver executes all of them for all pixels.
 fn seen_along(p_ws: vec3f, direction_ws: vec3f, below: bool) -> Seen {
     if WATER_REFRACTION == 0u && WATER_REFLECTION == 0u {
         return seen_rays(p_ws, direction_ws, below);

@@ -10,7 +10,7 @@ fn seen_rays(p_ws: vec3f, direction_ws: vec3f, below: bool) -> Seen {
     let hit = trace_opaque(start, direction_ws, 1e30);
     var radiance = environment_radiance(direction_ws);
     if hit.valid {
-        radiance = shade_hit(hit, start, direction_ws);
+        radiance = shade_hit(hit, direction_ws);
     }
     let way = select(1e30, hit.t, hit.valid);
     let inside = water_way(p_ws, direction_ws);

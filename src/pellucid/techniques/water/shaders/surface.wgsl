@@ -2,35 +2,10 @@
 //!import surroundings/shaders/camera
 //!import techniques/water/shaders/body
 
-struct WaterMeeting {
-    t: f32,
-    valid: bool,
-    p_ws: vec3f,
-    n_ws: vec3f,      // unit, up
-    variance: vec3f,  // of slopes that a pixel hides: xx, zz, xz
-    fold: f32,
-}
-
 const MEET_STEPS = 192u;
 const MEET_REFINEMENTS = 10u;
 const MEET_ROUNDING = 2e-7;  // of the way: a gap that need not become less
 const MEET_PIXELS = 0.5;  // crests that stand out by less may be passed
-
-// First crossing at 0 <= t < t_max
-fn meet_water(origin_ws: vec3f, direction_ws: vec3f, t_max: f32) -> WaterMeeting {
-    let sides = water_sides(origin_ws, direction_ws);
-    let start = max(sides.x, 0.0);
-    let under = water_gap(origin_ws, direction_ws, start) < 0.0;
-    return meet_water_from(origin_ws, direction_ws, start, min(sides.y, t_max), under);
-}
-
-// The same between two points of the ray, the first of which is `under` water or not
-fn meet_water_from(origin_ws: vec3f, direction_ws: vec3f, start: f32, end: f32, under: bool) -> WaterMeeting {
-    let found = water_crossing(origin_ws, direction_ws, start, end, select(1.0, -1.0, under));
-    let p_ws = origin_ws + max(found, 0.0) * direction_ws;
-    let at = wave_point(p_ws.xz, footprint_m(p_ws));
-    return WaterMeeting(found, found >= 0.0, p_ws, wave_normal(at.slope), at.variance, at.fold);
-}
 
 // Way to the first crossing, or -1. Steps are as long as the steepest slope of the waves allows, so that no crest is
 // passed but one that stands out by less than half a pixel. A ray that starts in the surface itself takes a step first.

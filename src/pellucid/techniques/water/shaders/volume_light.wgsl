@@ -1,11 +1,11 @@
 // Light that water scatters towards the viewer along a straight way, once, in closed form: that of lamps far away, and of
 // the sky.
-//!import optics/fresnel
 //!import optics/phase
 //!import surroundings/shaders/lights
 //!import surroundings/shaders/submerged_sky
 //!import surroundings/shaders/submerged_sun
 //!import techniques/water/shaders/beam
+//!import techniques/water/shaders/bindings
 //!import techniques/water/shaders/god_rays
 
 override WATER_GOD_RAYS: bool = false;
