@@ -32,6 +32,7 @@ def bottom(kind: str, side: int = 57) -> pl.Mesh:
     y = {
         "slope": -2.0 + 0.06 * x - 0.05 * z,
         "hills": -1.8 + 0.45 * np.sin(1.1 * x) * np.cos(0.9 * z),
+        "level": -1.5 + 0.0 * x,
     }[kind]
     i = np.arange(side * side).reshape(side, side)
     a, b, c, d = i[:-1, :-1].ravel(), i[1:, :-1].ravel(), i[:-1, 1:].ravel(), i[1:, 1:].ravel()
@@ -195,13 +196,13 @@ def renderer(device: Device) -> Any:
     return Renderer(device)
 
 
-def pond(height: float, technique: str) -> pl.Scene:
+def pond(height: float, technique: str, kind: str = "hills") -> pl.Scene:
     ball = pl.Mesh.sphere(0.5, position=(0.3, 0.2, 0.0), base_color=(0.8, 0.2, 0.1))
     waves = Sine(wavelength_m=2.0, amplitude_m=0.02, tile_m=8.0, shape=(64, 64))
     quality = WaterQuality(caustics="none", texture_size=256)
     water = pl.Water(extent_m=10.0, waves=waves, technique=technique, quality=quality)
     camera = pl.Camera((0.0, height, 4.5), (0.0, 0.2 * height, 0.0), fov_deg=50.0)
-    return pl.Scene(camera=camera, environment=pl.Environment.studio(), objects=[bottom("hills"), ball, water])
+    return pl.Scene(camera=camera, environment=pl.Environment.studio(), objects=[bottom(kind), ball, water])
 
 
 @pytest.mark.parametrize("height", [2.0, 0.01, -0.8])
@@ -217,10 +218,13 @@ def test_what_water_covers_is_not_drawn_and_no_pixel_shows_it(
     assert np.array_equal(frame.radiance, whole.radiance) and np.array_equal(frame.depth, whole.depth)
 
 
-@pytest.mark.parametrize("height", [2.0, -0.8])
-def test_pictures_show_what_rays_see(renderer: Any, height: float) -> None:
-    """The whole image, where pictures stand for rays: "fast" is "best" but for a few pixels."""
-    best, fast = (renderer.render(pond(height, technique), SIZE).radiance for technique in ("best", "fast"))
+@pytest.mark.parametrize(("height", "kind"), [(2.0, "hills"), (-0.8, "hills"), (2.0, "level"), (-0.001, "level")])
+def test_pictures_show_what_rays_see(renderer: Any, height: float, kind: str) -> None:
+    """The whole image, where pictures stand for rays: "fast" is "best" but for a few pixels.
+
+    On a level bottom all rays end just where meshes do. A camera in the level sees no point of it, but waves.
+    """
+    best, fast = (renderer.render(pond(height, technique, kind), SIZE).radiance for technique in ("best", "fast"))
     error = np.abs(fast - best).max(axis=-1) / best.mean()
     assert np.median(error) < 0.005 and (error > 0.1).mean() < 0.03
 

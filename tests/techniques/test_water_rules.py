@@ -9,6 +9,7 @@ import pytest
 
 import pellucid as pl
 from pellucid.fields.waves import Ripples
+from pellucid.surroundings.submersion import refracted_slope
 from water_scenes import Still, rays, sines
 
 if TYPE_CHECKING:
@@ -58,6 +59,14 @@ def test_waves_move_with_time_and_with_what_falls_in(renderer: Renderer) -> None
     assert (renderer.render(scene(water), size=SIZE).radiance == dented).all()  # the same time, the same bits
     with pytest.raises(pl.SceneError, match="waves"):
         pl.Water().drop(0, 0, 0.1, 0.1)
+    with pytest.raises(pl.SceneError, match=r"drop\.x_m"):
+        pl.Water().drop("here", 0, 0.1, 0.1)  # type: ignore[arg-type]
+
+
+def test_water_rarer_than_what_is_above_it_has_finite_light() -> None:
+    with np.errstate(all="raise"):
+        assert np.isfinite(refracted_slope(np.array([0.8, 0.6, 0.0]), 0.5)).all()
+        assert refracted_slope(np.array([0.6, 0.8, 0.0]), 1.0)[0] == pytest.approx(0.75)
 
 
 def test_a_drop_falls_where_the_world_says() -> None:

@@ -67,7 +67,7 @@ class Water(SceneObject):
             raise SceneError("water.quality", f"cannot be {type(self.quality).__name__!r}", "give a WaterQuality")
         store(
             self,
-            level=checks.number("water.level", self.level, unit="metres"),
+            level=checks.number("water.level", self.level, low=-WIDEST_M, high=WIDEST_M, unit="metres"),
             extent_m=_extent(self.extent_m),
             center=_pair("water.center", self.center, low=-WIDEST_M),
             waves=_checked_waves(self.waves),
@@ -118,9 +118,10 @@ class Water(SceneObject):
         ------
         SceneError : no waves of this water can be disturbed, or the place is outside of them.
         """
+        x, z = checks.number("drop.x_m", x_m, unit="metres"), checks.number("drop.z_m", z_m, unit="metres")
         for source in (self.waves, *getattr(self.waves, "layers", ())):
             if hasattr(source, "drop"):
-                return source.drop(x_m - self.center[0], z_m - self.center[1], radius_m, strength_m, time_s)
+                return source.drop(x - self.center[0], z - self.center[1], radius_m, strength_m, time_s)
         raise SceneError("water.waves", "cannot be disturbed", "give Ripples, alone or in a Sum")
 
 

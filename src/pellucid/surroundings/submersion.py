@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 MAP_FORMAT = "rgba16float"
 DEPTH_FORMAT = "depth32float"
 SKY_ROWS = 64  # of the environment that is summed for what comes through a surface
+LEAST_COSINE = 0.05  # of light below a surface
 LEVEL = np.array([(0.0, 1.0, 0.0), (0.0, -1.0, 0.0)])  # normals of a floor and a ceiling
 PAINTED = ("sample", "storage", "copy", "render")
 
@@ -207,7 +208,8 @@ def refracted_slope(towards: np.ndarray, n: float) -> tuple[float, float]:
     towards : (3,) unit, to the light, y > 0. n : index of the water over that above.
     """
     aside = np.asarray(towards, np.float64)[[0, 2]] / n
-    slope = aside / np.sqrt(1.0 - aside @ aside)
+    # Where the water is the rarer matter, light that slants far enters no level surface: then as it grazes below.
+    slope = aside / np.sqrt(max(1.0 - float(aside @ aside), LEAST_COSINE**2))
     return float(slope[0]), float(slope[1])
 
 

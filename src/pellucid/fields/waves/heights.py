@@ -84,7 +84,7 @@ def between(times_s: npt.NDArray[np.float64], time_s: float, loop: bool) -> tupl
 
 def _pictures(heights: Any) -> Singles:
     try:
-        given = np.asarray(heights, np.float32)
+        given = np.asarray(heights).astype(np.float32, casting="same_kind" if np.iscomplexobj(heights) else "unsafe")
     except (TypeError, ValueError):
         given = np.zeros(0, np.float32)
     if given.ndim not in (2, 3) or not given.size:

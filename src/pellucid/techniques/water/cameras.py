@@ -21,6 +21,7 @@ UP = np.array([0.0, 1.0, 0.0])
 FAR_M = 1e4  # stands for infinitely far away
 GRID = 17  # rays a side of a picture that ask where it shows water
 STEEPEST = 0.35  # slope; what steeper waves turn out of the pictures is found otherwise
+NEAREST = 0.03  # of the depth: between camera and level
 MARGIN = 1.12  # points of waves lie beside those of the level
 
 
@@ -152,10 +153,11 @@ def pictures(view: View, basin: Basin, mode: str, field_of_view: float) -> tuple
     within = bool(view.position[1] < basin.level_m)
     if within and not holds(basin, view.position):
         return widened(view, field_of_view), None  # through an open border
+    mirrored = reflection_camera(view, basin.level_m)
+    basin = _away(view, basin)
     points, ways = visible_surface(view, basin)
     if not len(points):
         return None, None
-    mirrored = reflection_camera(view, basin.level_m)
     if mode == "mihalik":
         across = view if within else refraction_camera(view, basin.level_m, basin.n_outside, basin.n_water)
         across, mirrored = widened(across, field_of_view), widened(mirrored, field_of_view)
@@ -193,6 +195,16 @@ def visible_surface(view: View, basin: Basin) -> tuple[Array, Array]:
     points = points[(x >= x0 - slack) & (x <= x1 + slack) & (z >= z0 - slack) & (z <= z1 + slack)]
     ways = np.broadcast_to(view.axes[2], points.shape) if view.is_orthographic else points - view.position
     return points, ways / np.linalg.norm(ways, axis=1, keepdims=True)
+
+
+def _away(view: View, basin: Basin) -> Basin:
+    """The basin with its level some way from a camera that is nearly in it, and sees waves where it sees no level."""
+    side = min(high - low for low, high in zip(basin.low, basin.high, strict=True))
+    least = min(NEAREST * max(basin.level_m - basin.bottom_m, 0.0), 0.01 * side)
+    height = view.position[1] - basin.level_m
+    if abs(height) >= least:
+        return basin
+    return replace(basin, level_m=float(view.position[1]) + (least if height < 0.0 else -least))
 
 
 def _border(view: View, basin: Basin) -> Array:

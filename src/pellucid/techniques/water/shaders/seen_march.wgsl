@@ -7,6 +7,7 @@ const MARCH_THICKNESS = 0.02;  // of the depth: a ray that is farther behind wha
 const MARCH_STEEPENING = 2.0;
 const MARCH_SECANTS = 2u;
 const MARCH_FAR_M = 1e4;
+const MARCH_BEYOND = 1.05;     // of the way to where meshes end: a level bottom ends them all just there
 
 // (x, y, reversed depth) run straight through the picture. Steps look for the first texel in front of the ray; halving
 // finds it to a texel, and false position between texels the rest. What lies far in front of the ray was passed behind.
@@ -15,7 +16,7 @@ fn seen_march(layer: u32, p_ws: vec3f, direction_ws: vec3f) -> PicturePlace {
     let along = water_views.clip_from_world[layer] * vec4f(direction_ws, 0.0);
     let reach = march_reach(layer, p_ws, direction_ws);
     let border = march_border(begin, along);
-    let t_end = min(reach, 0.9999 * border);
+    let t_end = min(MARCH_BEYOND * reach, 0.9999 * border);
     if !picture_shows(begin) {
         return PicturePlace(clamp(picture_uv(begin), vec2f(0.0), vec2f(1.0)), 0.0, PICTURE_UNKNOWN);
     }
@@ -84,7 +85,9 @@ fn march_meets(layer: u32, from_at: vec3f, to_at: vec3f, ends: vec2f, texel: f32
     let next = picture_metres(layer, picture_depth(layer, mix(from_at.xy, to_at.xy, ends.y + 1.5 * texel)));
     let before = picture_metres(layer, picture_depth(layer, mix(from_at.xy, to_at.xy, ends.x)));
     let most = MARCH_THICKNESS * ray;
-    return ray - shown <= most + MARCH_STEEPENING * abs(shown - next) || before - ray <= most;
+    let starts_behind = ends.x >= ends.y;
+    let near = select(most, 0.0, starts_behind) + MARCH_STEEPENING * abs(shown - next);
+    return ray - shown <= near || (!starts_behind && before - ray <= most);
 }
 
 // Secants between four texels each, which the ends need not lie on two sides of
