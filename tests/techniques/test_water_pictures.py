@@ -218,6 +218,17 @@ def test_what_water_covers_is_not_drawn_and_no_pixel_shows_it(
     assert np.array_equal(frame.radiance, whole.radiance) and np.array_equal(frame.depth, whole.depth)
 
 
+def test_walls_at_the_border_cover_the_water_from_outside(renderer: Any) -> None:
+    """A red wall in the very plane where the water ends, seen from beyond it: no pixel shows what is behind it."""
+    red: dict[str, Any] = {"base_color": (1.0, 0.0, 0.0), "specular": 0.0, "roughness": 1.0}
+    wall = pl.Mesh.plane((2.0, 2.0), position=(0.0, -1.0, 0.7), rotation=(90.0, 0.0, 0.0), **red)
+    floor = pl.Mesh.plane(1.4, position=(0.0, -1.4, 0.0), base_color=(0.0, 0.9, 0.0))
+    camera = pl.Camera((0.37, 1.2, 3.0), (0.1, -0.8, 0.7), fov_deg=22.0)
+    scene = pl.Scene(camera, pl.Environment.constant(1.0), [], [floor, wall, pl.Water(extent_m=(1.9, 1.4))])
+    radiance = renderer.render(scene, SIZE).radiance
+    assert (radiance[..., 0] > 10.0 * radiance[..., 1]).all()
+
+
 @pytest.mark.parametrize(("height", "kind"), [(2.0, "hills"), (-0.8, "hills"), (2.0, "level"), (-0.001, "level")])
 def test_pictures_show_what_rays_see(renderer: Any, height: float, kind: str) -> None:
     """The whole image, where pictures stand for rays: "fast" is "best" but for a few pixels.

@@ -22,6 +22,7 @@ NAMES = ("picture_colors", "picture_depths")
 LABELS = ("water picture below", "water picture above")
 CLIP_MARGIN_M = 0.01  # of what both pictures have in common round the surface [mihalik2008, 5.1, 5.2]
 HIDDEN_MARGIN_M = 1e-4  # so that nothing that touches the surface is lost to rounding
+HIDDEN_SHARE = 2e-4  # of the rectangle, at its borders
 VISIBILITY = 0.01  # share of light that comes from the farthest that is worth a place in a picture
 
 
@@ -137,13 +138,15 @@ def hidden_box(item: Water, limits_m: tuple[float, float], view: View) -> Box | 
     limits_m : lowest and highest wave over the level. view : the camera.
     """
     (x0, z0), (x1, z1) = item.bounds_m
+    # Walls that stand at the border are no part of it: from outside they cover the water.
+    wall_x, wall_z = (HIDDEN_SHARE * size for size in item.size_m)
     x, y, z = view.position
     over = y > item.level + limits_m[1] + view.near_m
     aside = x < x0 - view.near_m or x > x1 + view.near_m or z < z0 - view.near_m or z > z1 + view.near_m
     if view.is_orthographic or not (over or aside):
         return None
     top = item.level + limits_m[0] - HIDDEN_MARGIN_M
-    return (x0, -np.inf, z0), (x1, top, z1)
+    return (x0 + wall_x, -np.inf, z0 + wall_z), (x1 - wall_x, top, z1 - wall_z)
 
 
 def lowest_and_highest(surroundings: Surroundings) -> tuple[float, float]:
