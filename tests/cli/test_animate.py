@@ -282,3 +282,15 @@ def test_wrong_numbers_from_python(tmp_path, wrong):
     given = {"frames": 3, "size": (8, 8)} | wrong
     with pytest.raises(pl.SceneError):
         pl.animate(lambda time: pl.Scene(pl.Camera((0, 0, 2))), tmp_path / "out", **given)
+
+
+def test_water_in_a_file_moves_from_where_it_is_told_to_start(pellucid, animate, tmp_path):
+    waves = '[objects.waves]\nkind = "sine"\nwavelength_m = 1.0\namplitude_m = 0.05\ntile_m = 2.0\nshape = [16, 16]\n'
+    pond = tmp_path / "pond.toml"
+    pond.write_text(SCENE + '[[objects]]\ntype = "water"\nextent_m = 2.0\n' + waves)
+    assert animate("--fps", "4", "--start", "0.5", source=pond, folder="late").code == 0
+    first, second, third = (pixels(tmp_path / "late" / f"frame_000{i}.png") for i in range(3))
+    assert not np.array_equal(first, second) and not np.array_equal(second, third)
+    still = pellucid("render", pond, "-o", tmp_path / "still.png", *QUICK, "--time", "0.75")
+    assert still.code == 0
+    np.testing.assert_array_equal(pixels(tmp_path / "still.png"), second)
