@@ -252,3 +252,19 @@ def test_glow_adds_light_round_mirrored_lamps_alone(renderer: Any) -> None:
     assert np.abs(added[:8]).max() < 1e-3
     columns = added[..., 0].sum(axis=0)
     assert abs((columns * np.arange(size[0])).sum() / columns.sum() - 0.5 * (size[0] - 1)) < 6
+
+
+def test_a_sun_that_is_kept_apart_lights_as_one_that_is_not(renderer: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    def pictures() -> list[np.ndarray]:
+        waves = Sine(amplitude_m=0.03, wavelength_m=1.5)
+        lake = pl.Water(extent_m=24.0, medium="coastal", waves=waves, technique="fast")
+        meshes = [bottom("hills"), pl.Mesh.sphere(0.6, position=(0.4, -0.7, 1.0), roughness=0.3)]
+        sun = pl.DirectionalLight((-1.0, -2.0, -0.5))
+        scene = pl.Scene(camera=CAMERA, environment=pl.Environment.sky(), lights=[sun], objects=[*meshes, lake])
+        return [renderer.render(scene, SIZE, time=time).radiance for time in (0.3, 0.4, 0.5)]
+
+    apart = pictures()
+    monkeypatch.setattr(Surroundings, "sun_may_be_apart", False)
+    for one, other in zip(apart, pictures(), strict=True):
+        assert np.abs(one - other).mean() < 2e-3 * other.mean()
+    assert np.abs(apart[0] - apart[2]).mean() > 1e-2 * apart[0].mean()

@@ -97,6 +97,12 @@ class Surroundings:
         own = {"CAUSTICS": float(self.caustics.active), "SUBMERGED": float(self.submersion.active)}
         return {**own, "LAMPS_OCCLUDED": float(self.triangle_count > 0), **self._lamp_kinds}
 
+    @property
+    def sun_may_be_apart(self) -> bool:
+        """Whether all that waves change of the light on meshes is one map, of one lamp and one water."""
+        regions = self.submersion.regions
+        return len(regions) == 1 and len(regions[0].slopes) == 1 and not self.caustics.active
+
     def state(self, waters: bool = True) -> tuple[Any, ...]:
         """What pictures of the meshes depend on, but for the camera: equal to an earlier one while they are the same.
 

@@ -100,14 +100,15 @@ class Submersion:
     ----------
     active : whether there is water; then shaders are run with ``SUBMERGED`` = 1.
     light_map : texture of one layer for each water and light, rgba16float; see the top of this file.
-    version : grows whenever shading in water may change; whoever fills the maps adds to it.
+    version : grows whenever shading in water may change; whoever fills the maps of light adds to it.
+    settled : grows with what `set` changed, not with what the maps of light hold.
     depth_map : texture of as many layers, depth32float, 0 at the highest wave and 1 at the reach of each water.
     """
 
     def __init__(self, device: Device, resources: dict[str, Any]) -> None:
         self.device = device
         self.active = False
-        self.version = 0
+        self.version = self.settled = 0
         self.regions: tuple[WaterRegion, ...] = ()
         self._resources = resources
         self._params = np.zeros((), SubmersionParams)
@@ -164,6 +165,7 @@ class Submersion:
         if params.tobytes() != self._params.tobytes():
             self._params = params
             self.version += 1
+            self.settled += 1
             self.device.write(self._resources["submersion"], params.reshape(1))
         return anew
 
@@ -188,6 +190,7 @@ class Submersion:
         if self._size == (side, depth_side, layers):
             return False
         self.version += 1
+        self.settled += 1
         self.light_map = self.device.texture(
             size=(side, side), format=MAP_FORMAT, layers=layers, usage=PAINTED, label="submerged light"
         )

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 SHADERS = "surroundings/shaders"
 CLEAR = (0.0, 0.0, 0.0, 0.0)
 FARTHEST_M = 1e30
+APART_FORMAT = "rgba16float"
 
 Box = tuple[tuple[float, float, float], tuple[float, float, float]]  # lower and upper corner, metres
 
@@ -75,12 +76,22 @@ class SceneView:
         self.device = device
         self.format = format
         self._triangles: Any = None
+        self._apart: tuple[Any, Any] | None = None
         self._frame: Any = None
         self._clip: Any = None
         self._box: Any = None
         self._clusters: tuple[Geometry | None, Clusters | None] = (None, None)
         self._seen: tuple[Any, ...] = ()
+        self._rested: tuple[Any, ...] = ()
         self._lit: tuple[Any, ...] = ()
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of GPU memory held for shading."""
+        kept = [] if self._triangles is None else [(self._triangles, 4)]
+        if self._apart is not None:
+            kept += [(self._apart[0], 16 if self.format == COLOR_FORMAT else 8), (self._apart[1], 8)]
+        return sum(texture.width * texture.height * size for texture, size in kept)
 
     def draw(
         self,
@@ -138,6 +149,25 @@ class SceneView:
                 label=f"{label} visibility",
             )
         self._seen, self._lit = seen, lit
+        # Where nothing over the surface is shown, what only waves cover may count as water.
+        if waters and shown.clip is not None and surroundings.sun_may_be_apart:
+            self._shade_apart(encoder, color, depth, surroundings, bindings, seen, timer, label)
+        else:
+            self._shade(encoder, color, depth, surroundings, bindings, waters, timer, label)
+        if sky:
+            self.draw_sky(encoder, color, depth, bindings, timer, f"{label} sky")
+
+    def _shade(
+        self,
+        encoder: Any,
+        color: Any,
+        depth: Any,
+        surroundings: Surroundings,
+        bindings: dict[str, Any],
+        waters: bool,
+        timer: PassTimer | None,
+        label: str,
+    ) -> None:
         constants = surroundings.shading_constants
         # Both are made at once, so that a camera that dives waits for nothing.
         wet, dry = self._shading(constants), self._shading({**constants, "SUBMERGED": 0.0})
@@ -146,12 +176,57 @@ class SceneView:
             color=[color],
             depth=depth,
             clear=[CLEAR],
-            bindings={**bindings, "visible_triangles": triangles},
+            bindings={**bindings, "visible_triangles": self._triangles},
             timer=timer,
             label=f"{label} shading",
         )
-        if sky:
-            self.draw_sky(encoder, color, depth, bindings, timer, f"{label} sky")
+
+    def _shade_apart(
+        self,
+        encoder: Any,
+        color: Any,
+        depth: Any,
+        surroundings: Surroundings,
+        bindings: dict[str, Any],
+        seen: tuple[Any, ...],
+        timer: PassTimer | None,
+        label: str,
+    ) -> None:
+        """Only light that waves focus is added anew while nothing but waves moves."""
+        rest, sun = self._apart_targets((self._triangles.width, self._triangles.height))
+        rested = (seen, surroundings.submersion.settled)
+        if rested != self._rested:
+            options: dict[str, Any] = {"targets": (self.format, APART_FORMAT), "depth_compare": "less"}
+            constants = {**surroundings.shading_constants, "SUN_APART": 1.0}
+            self._pass("shading_apart", constants, **options).run(
+                encoder,
+                color=[rest.create_view(), sun.create_view()],
+                depth=depth,
+                clear=[CLEAR, CLEAR],
+                bindings={**bindings, "visible_triangles": self._triangles},
+                timer=timer,
+                label=f"{label} shading",
+            )
+            self._rested = rested
+        self._pass("sunlit", {}, depth=None).run(
+            encoder,
+            color=[color],
+            clear=[CLEAR],
+            bindings={**bindings, "shaded_rest": rest, "shaded_sun": sun, "shaded_depth": depth},
+            timer=timer,
+            label=f"{label} sun",
+        )
+
+    def _apart_targets(self, size: tuple[int, int]) -> tuple[Any, Any]:
+        """Radiance but for that of the sun through the water, and that for a sun that nothing takes from."""
+        if self._apart is None or (self._apart[0].width, self._apart[0].height) != size:
+            usage = ("sample", "render")
+            rest, sun = (
+                self.device.texture(size=size, format=format, usage=usage, label="shaded apart")
+                for format in (self.format, APART_FORMAT)
+            )
+            self._apart, self._rested = (rest, sun), ()
+        return self._apart
 
     def draw_sky(
         self,
@@ -193,13 +268,12 @@ class SceneView:
 
     def _pass(self, module: str, constants: dict[str, float], **options: Any) -> RenderPass:
         """A pipeline; all views of a device share it, for a software driver compiles a shader for seconds."""
-        options = {"targets": (self.format,), "depth_write": False, **options}
+        options = {"targets": (self.format,), "depth": DEPTH_FORMAT, "depth_write": False, **options}
         key = ("scene view", module, *options["targets"], *constants.values())
         cache = self.device.cache
         if key not in cache:
-            cache[key] = RenderPass(
-                self.device, f"{SHADERS}/{module}", depth=DEPTH_FORMAT, constants=constants, **options
-            )
+            nearest = ("shaded_rest", "shaded_depth")
+            cache[key] = RenderPass(self.device, f"{SHADERS}/{module}", constants=constants, nearest=nearest, **options)
         made: RenderPass = cache[key]
         return made
 

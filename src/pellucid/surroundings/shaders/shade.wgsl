@@ -12,9 +12,20 @@ override SUBMERGED: bool = false;  // whether there is water that surfaces may s
 
 const SHADE_MIN_ALPHA = 0.002;  // a lamp is a point: a perfect mirror would show it infinitely bright
 
+// What a surface sends, and what it would send for each unit of the light that a map tells of
+struct Shaded {
+    radiance: vec3f,
+    sun: vec3f,       // times the share of the lamp that comes to the surface
+    sun_seen: f32,    // 0 in shadow, 1 in the light
+}
+
+fn shade_surface(surface: SurfacePoint, triangle: u32, view_ws: vec3f) -> vec3f {
+    return shade_parts(surface, triangle, view_ws).radiance;
+}
+
 // Lambert under GGX. What the lobe reflects is taken from the diffuse share, so a white surface in a uniform
 // environment returns just that environment, at any roughness.
-fn shade_surface(surface: SurfacePoint, triangle: u32, view_ws: vec3f) -> vec3f {
+fn shade_parts(surface: SurfacePoint, triangle: u32, view_ws: vec3f) -> Shaded {
     let p_ws = surface.p_ws;
     let n_ws = surface.n_ws;
     let material = surface.material;
@@ -23,7 +34,11 @@ fn shade_surface(surface: SurfacePoint, triangle: u32, view_ws: vec3f) -> vec3f 
     var f0 = materials[material].specular;
     var water = Submerged(false, 0u, 0.0);
     if SUBMERGED {
-        water = submerged_at(p_ws);
+        if SUN_APART {
+            water = submerged_at_rest(p_ws);
+        } else {
+            water = submerged_at(p_ws);
+        }
         f0 = select(f0, submerged_coat(f0, submersion.index[water.water].g), water.inside && f0 > 0.0);
     }
     let alpha = max(roughness * roughness, SHADE_MIN_ALPHA);
@@ -46,6 +61,7 @@ fn shade_surface(surface: SurfacePoint, triangle: u32, view_ws: vec3f) -> vec3f 
         }
         radiance += specular * glossy;
     }
+    var apart = Shaded(vec3f(0.0), vec3f(0.0), 1.0);
     var direct = DirectLight(vec3f(0.0), vec3f(0.0));
     let n_face = face_normal(triangle, view_ws);
     for (var light = 0u; light < light_count(); light++) {
@@ -63,9 +79,16 @@ fn shade_surface(surface: SurfacePoint, triangle: u32, view_ws: vec3f) -> vec3f 
             }
             if n_dot_l > 0.0 && any(sample.irradiance > vec3f(0.0)) {
                 let brdf = diffuse + specular_lobe(n_ws, view_ws, sample.direction, n_dot_l, n_dot_v, alpha, f0);
-                radiance += brdf * sample.irradiance * n_dot_l;
+                let sent = brdf * sample.irradiance * n_dot_l;
+                if SUN_APART {
+                    let mapped = water.inside && lights[light].water_layer == 0;
+                    apart.sun += select(vec3f(0.0), sent, mapped);
+                    radiance += select(sent, vec3f(0.0), mapped);
+                } else {
+                    radiance += sent;
+                }
                 if CAUSTICS {
-                    direct.radiance += brdf * sample.irradiance * n_dot_l;
+                    direct.radiance += sent;
                 }
             }
         }
@@ -75,7 +98,10 @@ fn shade_surface(surface: SurfacePoint, triangle: u32, view_ws: vec3f) -> vec3f 
         radiance += diffuse * received.caustic - direct.radiance * blocked_share(received, direct.irradiance);
         radiance = max(radiance, vec3f(0.0));
     }
-    return radiance;
+    if SUN_APART {
+        apart.sun_seen = submerged_map_visibility(submerged_sun(), p_ws, n_ws, water.water);
+    }
+    return Shaded(radiance, apart.sun, apart.sun_seen);
 }
 
 // What the lamps give to a point by themselves

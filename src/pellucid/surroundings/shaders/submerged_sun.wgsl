@@ -4,6 +4,8 @@
 //!import surroundings/shaders/shadow
 //!import surroundings/shaders/submersion
 
+override SUN_APART: bool = false;  // leave out what the first map of a water tells, see sunlit.wgsl
+
 // Unit direction towards a light, in the water; `index` is that of the water over that above
 fn submerged_direction(to_light: vec3f, index: f32) -> vec3f {
     let aside = to_light.xz / index;
@@ -23,39 +25,72 @@ fn sample_submerged_sun(light: u32, p_ws: vec3f, n_ws: vec3f, at: Submerged) -> 
     return LightSample(direction, irradiance * submerged_beam(light, p_ws, n_ws, direction, at));
 }
 
-// What is left of the flux that falls on the surface above a point: its share that comes through, shadows, and loss. The
-// beam loses all that is absorbed or scattered. What is scattered by less than a right angle comes too [gordon1973], from
-// a place as wide as it goes astray: the mean of the map there, of four points.
+// What is left of the flux that falls on the surface above a point. In pictures that keep the sun apart (sunlit.wgsl) it
+// is all for the first map.
 fn submerged_beam(light: u32, p_ws: vec3f, n_ws: vec3f, direction: vec3f, at: Submerged) -> vec3f {
-    let level_m = submersion.level[at.water].x;
-    let index = submersion.index[at.water].rgb;
+    let layer = lights[light].water_layer;
+    if SUN_APART && layer == 0 {
+        return vec3f(1.0);
+    }
+    var seen = 1.0;
+    if layer >= 0 {
+        seen = submerged_map_visibility(light, p_ws, n_ws, at.water);
+    }
+    return submerged_share(light, p_ws, direction, at.water, seen);
+}
+
+// Shadow of meshes in the map of a light; past walls, if there are any, in light that has not come in through the surface
+fn submerged_map_visibility(light: u32, p_ws: vec3f, n_ws: vec3f, water: u32) -> f32 {
+    let layer = u32(max(lights[light].water_layer, 0));
+    let camera = submersion.slope[water * MAX_WATER_LIGHTS + layer];
+    if submerged_mapped(submerged_uv(water, submerged_entry(p_ws, submersion.level[water].x, camera.xy))) {
+        let map = u32(submersion.level[water].z) + layer;
+        return mix(1.0, submerged_visibility(water, map, p_ws, n_ws, camera.xy), camera.z);
+    }
+    return shadow_visibility(light, p_ws, n_ws);
+}
+
+// The lamp of the first map of each water; the first lamp where there is none
+fn submerged_sun() -> u32 {
+    var found = 0u;
+    for (var light = 0u; light < light_count(); light++) {
+        found = select(found, light, lights[light].water_layer == 0);
+    }
+    return found;
+}
+
+fn submerged_mapped(uv: vec2f) -> bool {
+    return all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0));
+}
+
+// Its share that comes through, and loss. The beam loses all that is absorbed or scattered. What is scattered by less than
+// a right angle comes too [gordon1973], from a place as wide as it goes astray: the mean of the map there, of four points.
+fn submerged_share(light: u32, p_ws: vec3f, direction: vec3f, water: u32, seen: f32) -> vec3f {
+    let level_m = submersion.level[water].x;
+    let index = submersion.index[water].rgb;
     let towards = lights[light].direction;
-    let scattering = submersion.scattering[at.water];
-    let extinction = submersion.absorption[at.water].rgb + scattering.rgb;
-    let attenuation = submersion.absorption[at.water].rgb + 0.5 * (1.0 - scattering.a) * scattering.rgb;
+    let scattering = submersion.scattering[water];
+    let extinction = submersion.absorption[water].rgb + scattering.rgb;
+    let attenuation = submersion.absorption[water].rgb + 0.5 * (1.0 - scattering.a) * scattering.rgb;
     var share = 1.0 - vec3f(
         fresnel_dielectric(towards.y, 1.0, index.r),
         fresnel_dielectric(towards.y, 1.0, index.g),
         fresnel_dielectric(towards.y, 1.0, index.b),
     );
     let entry = submerged_entry(p_ws, level_m, direction.xz / direction.y);
-    let path_m = max(level_m + submerged_wave(at.water, entry) - p_ws.y, 0.0) / direction.y;
+    let path_m = max(level_m + submerged_wave(water, entry) - p_ws.y, 0.0) / direction.y;
     let astray_m = SUBMERGED_ASTRAY * path_m * sqrt(max(1.0 - scattering.a, 0.0));
     var soft = share;
     let layer = lights[light].water_layer;
     if layer >= 0 {
-        let camera = submersion.slope[at.water * MAX_WATER_LIGHTS + u32(layer)];
-        let slope = camera.xy;
-        let uv = submerged_uv(at.water, submerged_entry(p_ws, level_m, slope));
-        if all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0)) {
-            let map = u32(submersion.level[at.water].z) + u32(layer);
+        let slope = submersion.slope[water * MAX_WATER_LIGHTS + u32(layer)].xy;
+        let uv = submerged_uv(water, submerged_entry(p_ws, level_m, slope));
+        if submerged_mapped(uv) {
+            let map = u32(submersion.level[water].z) + u32(layer);
             share = textureSampleLevel(submerged_light, caustic_sampler, uv, map, 0.0).rgb;
-            soft = submerged_mean(uv, map, astray_m / (submersion.bounds[at.water].zw - submersion.bounds[at.water].xy));
-            share *= mix(1.0, submerged_visibility(at.water, map, p_ws, n_ws, slope), camera.z);
-        } else {
-            // Light that has not come in through the surface: past walls, if there are any
-            share *= shadow_visibility(light, p_ws, n_ws);
+            soft = submerged_mean(uv, map, astray_m / (submersion.bounds[water].zw - submersion.bounds[water].xy));
         }
+        share *= seen;
     }
     let direct = exp(-extinction * path_m);
     return share * direct + soft * (exp(-attenuation * path_m) - direct);

@@ -58,7 +58,8 @@ class SurfacePictures:
     def nbytes(self) -> int:
         """Bytes of GPU memory held."""
         texels = 0 if self._colors is None else 2 * self._colors.width * self._colors.height
-        return texels * ((16 if self.format == COLOR_FORMAT else 8) + 4) + WaterViews.itemsize
+        own = texels * ((16 if self.format == COLOR_FORMAT else 8) + 4) + WaterViews.itemsize
+        return own + sum(scene.nbytes for scene in self._scenes)
 
     def draw(
         self,

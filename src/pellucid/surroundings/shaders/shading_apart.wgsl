@@ -1,0 +1,24 @@
+// As shading.wgsl, but light that a map of water tells of goes to a picture of its own: see sunlit.wgsl.
+//!import surroundings/shaders/shade
+//!import surroundings/shaders/full_picture
+
+struct ShadedApart {
+    @location(0) rest: vec4f,
+    @location(1) sun: vec4f,  // what a surface sends for the share of the lamp that comes to it; its shadow
+}
+
+@group(0) @binding(0) var visible_triangles: texture_2d<u32>;
+
+@fragment
+fn fs_main(@builtin(position) position: vec4f) -> ShadedApart {
+    let triangle = max(textureLoad(visible_triangles, vec2i(position.xy), 0).r, 1u) - 1u;
+    let ray = camera_ray(position.xy);
+    let found = triangle_plane_entry(triangle, ray.origin, ray.direction);
+    let u = saturate(found.y);
+    let view_ws = -ray.direction;
+    let surface = surface_at(triangle, vec2f(u, clamp(found.z, 0.0, 1.0 - u)), view_ws);
+    let shaded = shade_parts(surface, triangle, view_ws);
+    return ShadedApart(vec4f(shaded.radiance, 1.0), vec4f(min(shaded.sun, vec3f(SHADED_MAX)), shaded.sun_seen));
+}
+
+const SHADED_MAX = 60000.0;  // below the largest half float
