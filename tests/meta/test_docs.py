@@ -43,7 +43,7 @@ def quoted(program: str) -> list[tuple[Path, list[str]]]:
 
 def test_the_example_of_the_readme_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     blocks = [body for language, body in FENCE.findall((ROOT / "README.md").read_text("utf-8")) if language == "python"]
-    assert len(blocks) == 1 and 8 <= len([line for line in blocks[0].splitlines() if line.strip()]) <= 12
+    assert [8 <= len([line for line in block.splitlines() if line.strip()]) <= 12 for block in blocks] == [True, True]
     small = blocks[0]
     for written, tried in (("size=(800, 600)", "size=(64, 48)"), ("samples=4", "samples=1"), ("=96", "=32")):
         assert written in small
@@ -53,6 +53,25 @@ def test_the_example_of_the_readme_runs(tmp_path: Path, monkeypatch: pytest.Monk
     exec(compile(small, "README.md", "exec"), values)
     assert [p.name for p in tmp_path.iterdir()] == ["ball.png"]
     assert values["frame"].radiance.std() > 0.01  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize(
+    ("page", "number", "picture"),
+    [("README.md", 1, "pool.png"), ("docs/water.md", 0, "pool.png"), ("docs/water.md", 1, "")],
+)
+def test_the_examples_of_water_run(
+    page: str, number: int, picture: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    blocks = [body for language, body in FENCE.findall((ROOT / page).read_text("utf-8")) if language == "python"]
+    small = blocks[number].replace("size=(800, 600)", "size=(48, 36)")
+    assert ("size=(48, 36)" in small) == bool(picture)
+    monkeypatch.chdir(tmp_path)
+    values: dict[str, Any] = {}
+    exec(compile(small, page, "exec"), values)
+    assert [p.name for p in tmp_path.iterdir()] == ([picture] if picture else [])
+    if not picture:
+        first, later = (values["waves"].layers[0].advance(time) for time in (1.0, 2.2))
+        assert np.abs(later - first).max() > 0.003  # the boat has gone on, and something fell in
 
 
 def test_the_example_of_the_page_on_light_runs(capsys: pytest.CaptureFixture[str]) -> None:

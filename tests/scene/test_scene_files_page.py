@@ -25,6 +25,15 @@ def test_the_example_is_a_scene(tmp_path: Path) -> None:
     assert len(scene.objects) == 3 and len(scene.lights) == 1 and scene.tone_mapping == "khronos"
 
 
+def test_the_example_of_water_is_one(tmp_path: Path) -> None:
+    (tmp_path / "pool.toml").write_text(re.findall(r"```toml\n(.*?)```", PAGE, flags=re.DOTALL)[1], encoding="utf-8")
+    scene = pl.load_scene(tmp_path / "pool.toml")
+    water = scene.objects[1]
+    assert isinstance(water, pl.Water) and [layer.kind for layer in water.waves.layers] == ["ocean", "ripples"]
+    heights = water.waves.layers[1].advance(0.5)
+    assert np.isfinite(heights).all() and np.ptp(heights) > 0.001
+
+
 def test_every_field_is_on_the_page() -> None:
     table = PAGE.partition("## Every field")[2]
     assert sorted(set(KNOWN_FIELDS) - set(re.findall(r"`(\w+)`", table))) == []

@@ -88,17 +88,3 @@ def test_the_thesis_goes_towards_one_colour(renderer: Renderer) -> None:
     near = floor < 15.0
     expected = (1.0 - np.exp(-0.5 * floor[near]))[:, None] * np.array([0.0, 0.2, 0.1])
     np.testing.assert_allclose(found[near], expected, rtol=1e-3, atol=1e-5)
-
-
-@pytest.mark.parametrize("height", [1.0, -0.7], ids=["from above", "from below"])
-def test_a_white_floor_under_clear_water_vanishes_in_an_even_sky(height: float, renderer: Renderer) -> None:
-    sky = np.array([0.3, 0.5, 0.7])
-    floor = pl.Mesh.plane(300.0, position=(0, -1.5, 0), base_color=(1, 1, 1), specular=0.0)
-    ball = pl.Mesh.sphere(0.4, position=(0, -0.9, 0), base_color=(1, 1, 1), specular=0.0)
-    scene = pl.Scene(
-        camera=pl.Camera(position=(0, height, 3), target=(0, -0.9, 0), fov_deg=45),
-        environment=pl.Environment.constant(tuple(sky)),
-        objects=[floor, ball, pl.Water(extent_m=200.0, medium=1.333)],
-    )
-    radiance = renderer.render(scene, size=SIZE).radiance
-    np.testing.assert_allclose(radiance, np.broadcast_to(sky, radiance.shape), rtol=5e-3)

@@ -87,7 +87,7 @@ def pellucid(
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit.")
     ] = False,
 ) -> None:
-    """Draw glass, gems, liquids and every other thing that bends light inside.
+    """Draw glass, gems, water and every other thing that bends light.
 
     Works on any GPU through Vulkan, Metal or DirectX 12, and on the CPU through a software Vulkan driver.
     Each command explains itself: pellucid COMMAND --help.
@@ -112,6 +112,7 @@ _add(
 _add(
     animate,
     "pellucid animate wine-glass --light-orbit 90 --frames 24 -o out/wine",
+    "pellucid animate water-pool --frames 48 -o out/pool",
     "pellucid animate scene.toml --orbit 360 --frames 120 --size 1280x720 -o out/turn --video turn.mp4",
     "pellucid animate scene.toml --orbit 360 --frames 120 --only 60:120 -o out/turn",
 )
@@ -120,7 +121,7 @@ _add(
     "pellucid trace ball.ply --origin 0,0.01,1 --direction 0,0,-1",
     "pellucid trace flame.npy --extent 0.1 --rays rays.csv -o bent.csv",
 )
-_add(media, "pellucid media", "pellucid media N-BK7")
+_add(media, "pellucid media", "pellucid media N-BK7", "pellucid media 'clear lake'")
 _add(doctor, "pellucid doctor")
 _add(bench, "pellucid bench", "pellucid bench eikonal --json > eikonal.json", "pellucid bench water --repeat 1")
 
