@@ -11,7 +11,9 @@
 fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = vec2i(position.xy);
     let sun = textureLoad(shaded_sun, pixel, 0);
-    let p_ws = point_at(position.xy, view_depth_m(textureLoad(shaded_depth, pixel, 0).r));
+    let ray = camera_ray(position.xy);
+    let metres = view_depth_m(textureLoad(shaded_depth, pixel, 0).r);
+    let p_ws = ray.origin + metres / dot(ray.direction, frame.camera_forward) * ray.direction;
     let light = submerged_sun();
     let direction = submerged_direction(lights[light].direction, submersion.index[0].g);
     let share = submerged_share(light, p_ws, direction, 0u, sun.a);
