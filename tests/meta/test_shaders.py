@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import importlib
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
 PACKAGE = Path(__file__).resolve().parents[2] / "src" / "pellucid"
 OPTICS = PACKAGE / "optics"
 SHADERS = sorted(str(p.relative_to(PACKAGE).with_suffix("")) for p in PACKAGE.rglob("*.wgsl"))
+LAYOUTS = sorted(
+    ".".join(("pellucid", *p.relative_to(PACKAGE).with_suffix("").parts)) for p in PACKAGE.rglob("layouts.py")
+)
 LAWS = sorted({p.stem for p in OPTICS.iterdir() if p.suffix in {".py", ".wgsl"} and p.stem != "__init__"})
 
 # They take the field as a function, and WGSL has no function values: its techniques call the parts (drift, kick).
@@ -39,6 +43,20 @@ def test_every_function_of_a_law_has_its_twin(law: str) -> None:
     shader = wgsl_functions(OPTICS / f"{law}.wgsl")
     assert shader, f"{law}.wgsl defines no function"
     assert shader == python_functions(OPTICS / f"{law}.py") - PYTHON_ONLY
+
+
+def test_numbers_of_layouts_are_the_same_in_shaders() -> None:
+    """Constants of the same name, and those whose comment names one: `const ROWS = 32u;  // layouts.ENTRIES`."""
+    known = {name: value for module in LAYOUTS for name, value in vars(importlib.import_module(module)).items()}
+    line = re.compile(r"^const (\w+)(?:: \w+)? = ([\d.]+)[uif]?;(?:  // (?:\w+\.)*layouts\.(\w+))?", re.MULTILINE)
+    found = {
+        (path.stem, named or name, float(value))
+        for path in PACKAGE.rglob("*.wgsl")
+        for name, value, named in line.findall(path.read_text(encoding="utf-8"))
+        if named or name in known
+    }
+    assert len(found) > 10
+    assert {(shader, name, known.get(name)) for shader, name, _ in found} == found
 
 
 def python_functions(path: Path) -> set[str]:

@@ -12,7 +12,9 @@ from pellucid.fields.waves import Gerstner, Heights, Ocean, Ripples, Sine, Sum
 from pellucid.gpu import ComputeKernel
 from pellucid.gpu.modules import ModuleSource, _used_bindings, source
 from pellucid.techniques.water.passes import WaterTechnique
+from pellucid.techniques.water.prepare import surfaces_of, wave_maps
 from pellucid.techniques.water.wave_moments import moment_levels, short_slopes
+from water_scenes import Still
 
 if TYPE_CHECKING:
     from pellucid.gpu import Device
@@ -95,6 +97,15 @@ def test_moments_keep_means_and_variances() -> None:
     box = texels[0, :12, :8, 1].reshape(6, 2, 4, 2).mean(axis=(1, 3))
     even = moment_levels(texels[:, :12])
     np.testing.assert_allclose(even[0][0, :, :4, 0], box, atol=1e-6)
+
+
+@pytest.mark.parametrize("shape", [(6, 8), (1, 8), (6, 1)])
+def test_heights_without_slopes_have_those_of_a_plane_up_to_the_border(shape: tuple[int, int]) -> None:
+    rows, columns = np.indices(shape)
+    source = Still(0.1 * columns - 0.3 * rows, tile_m=(2.0 * shape[1], 0.5 * shape[0]), periodic=False)
+    texels = wave_maps(pl.Water(waves=source), surfaces_of(source, 0.0)).texels[0]
+    expected = 0.05 if shape[1] > 1 else 0.0, -0.6 if shape[0] > 1 else 0.0
+    np.testing.assert_allclose(texels[..., 1:3], np.broadcast_to(expected, (*shape, 2)), rtol=1e-5)
 
 
 def test_slopes_that_a_footprint_hides_become_roughness(wave_probe: Probe) -> None:

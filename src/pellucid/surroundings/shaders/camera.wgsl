@@ -34,12 +34,6 @@ fn view_depth_m(depth: f32) -> f32 {
     return select(frame.near_m / depth, frame.far_m - depth * (frame.far_m - frame.near_m), camera_is_orthographic());
 }
 
-// World-space point at a view depth (metres) behind a point of the picture
-fn point_at(pixel: vec2f, view_depth_m: f32) -> vec3f {
-    let ray = camera_ray(pixel);
-    return ray.origin + ray.direction * (view_depth_m / dot(ray.direction, frame.camera_forward));
-}
-
 // Width in metres of what one pixel covers at a point
 fn footprint_m(p_ws: vec3f) -> f32 {
     return frame.pixel_footprint * select(distance(p_ws, frame.camera_position), 1.0, camera_is_orthographic());

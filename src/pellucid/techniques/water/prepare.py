@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellucid.errors import SceneError
+from pellucid.fields.heightfield import slopes_of
 from pellucid.techniques.water.layouts import WAVE_LAYERS, WaterParams
 from pellucid.techniques.water.wave_moments import short_slopes
 
@@ -123,12 +124,9 @@ def _steepest(heights: np.ndarray, cell_m: tuple[float, float]) -> float:
 
 
 def _slopes(heights: np.ndarray, source: Any) -> np.ndarray:
-    """(H, W, 2) dh/dx and dh/dz by central differences; z runs down the rows."""
+    """(H, W, 2) dh/dx and dh/dz; z runs down the rows, v up."""
     cell = source.tile_m[0] / source.shape[1], source.tile_m[1] / source.shape[0]
-    padded = np.pad(heights.astype(np.float64), 1, mode="wrap" if _repeats(source) else "edge")
-    along_x = (padded[1:-1, 2:] - padded[1:-1, :-2]) / (2.0 * cell[0])
-    along_z = (padded[2:, 1:-1] - padded[:-2, 1:-1]) / (2.0 * cell[1])
-    return np.stack([along_x, along_z], axis=2)
+    return slopes_of(heights, cell, _repeats(source)) * np.array([1.0, -1.0], np.float32)
 
 
 def parameters(item: Water, quality: WaterQuality, waves: WaveMaps, time_s: float) -> np.ndarray:

@@ -10,8 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
-FAR_M = 1e4
-
 
 def first_triangle(origins: ArrayLike, directions: ArrayLike, triangles: ArrayLike) -> Array:
     """Way (N,) of rays to the first of all triangles, from either side; infinite where there is none [moller1997].
@@ -62,7 +60,8 @@ def iterate(
     Parameters
     ----------
     u, r : (N, 3) points of the surface, unit directions.
-    bottom : points (N, 3) to the points where the camera's rays through them end; infinitely far ones may be `FAR_M`.
+    bottom : points (N, 3) to the points where the camera's rays through them end; where there is
+        no bottom, any that is far away.
     depth_of : points (N, 3) to their depth (N,) before the camera, metres.
     """
     u, r = np.asarray(u, np.float64), np.asarray(r, np.float64)
