@@ -139,6 +139,7 @@ def all_kinds() -> list[Any]:
         ripples,
         Heights(pictures, (2.0, 1.0), [0.0, 1.0], periodic=True),
         MeshWaves([a, b], 4.0, (8, 8), times_s=[0.0, 2.0]),
+        MeshWaves(grid(4, 5.0, lambda x, z: 0.0 * x), 4.0, (8, 8)),
         Sum(Sine(shape=(16, 16)), Heights(pictures[0], 10.0)),
     ]
 

@@ -190,6 +190,6 @@ def _mesh(vertices: Any, faces: Any) -> tuple[Array, Array]:
 
 def _limits(value: Any) -> tuple[float, float]:
     parts = arguments.numbers("limits_m", value)
-    if len(parts) != 2 or not parts[0] < parts[1]:
+    if len(parts) != 2 or parts[0] > parts[1]:
         raise SceneError("limits_m", f"are {value!r}", "give (lowest, highest)")
     return float(parts[0]), float(parts[1])
