@@ -8,7 +8,8 @@ import numpy as np
 
 from pellucid.errors import SceneError
 from pellucid.fields.waves import arguments
-from pellucid.fields.waves.ripples import Disturbance, Push, Ripples
+from pellucid.fields.waves.disturbances import Disturbance, Push
+from pellucid.fields.waves.ripples import Ripples
 from pellucid.fields.waves.source import WaveSource, WaveSurface, bilinear
 
 #: Most layers that water adds up.

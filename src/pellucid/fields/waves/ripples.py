@@ -12,6 +12,7 @@ import numpy.typing as npt
 from pellucid.errors import SceneError
 from pellucid.fields.waves import arguments
 from pellucid.fields.waves.arguments import number
+from pellucid.fields.waves.disturbances import Disturbance, Push, places_of
 from pellucid.fields.waves.source import WaveSource, WaveSurface, difference_slopes
 
 BOUNDARIES = ("reflect", "periodic", "absorb")
@@ -24,39 +25,6 @@ REACH = 4.0
 MOST_STEPS = 1_000_000
 
 Array = npt.NDArray[Any]
-
-
-@dataclass(frozen=True)
-class Disturbance:
-    """A place at which the surface is pressed down at a time; see `Ripples.drop`."""
-
-    time_s: float
-    x_m: float
-    z_m: float
-    radius_m: float
-    strength_m: float
-
-
-@dataclass(frozen=True)
-class Push:
-    """Something that floats, such as a boat or a ball, and its way; see `Ripples.push`.
-
-    times_s : when it is at the places `path_m` (x, z); it goes straight between them, and is eased in and out over
-    `ease_s`.
-    """
-
-    times_s: tuple[float, ...]
-    path_m: tuple[tuple[float, float], ...]
-    radius_m: float
-    strength_m: float
-    ease_s: float
-
-    def at(self, time_s: float) -> tuple[float, float, float]:
-        """x, z and the depth of its dent at rest at a time, metres; the depth is 0 before and after."""
-        x, z = (float(np.interp(time_s, self.times_s, line)) for line in zip(*self.path_m, strict=True))
-        near = min(time_s - self.times_s[0], self.times_s[-1] - time_s) / self.ease_s
-        share = min(max(near, 0.0), 1.0)
-        return x, z, self.strength_m * share * share * (3.0 - 2.0 * share)
 
 
 @dataclass(frozen=True)
@@ -238,7 +206,7 @@ class Ripples(WaveSource):
         SceneError : a path of another shape, a time before now, times that do not rise, a radius below a cell.
         """
         radius, strength = number("radius_m", radius_m, low=self.cell_m), number("strength_m", strength_m)
-        path = _path(path_m)
+        path = places_of(path_m)
         if times_s is None:
             speed = self.speed_m_s if speed_m_s is None else number("speed_m_s", speed_m_s, low=1e-9)
             start = self.time_s if time_s is None else number("time_s", time_s, low=self.time_s)
@@ -425,13 +393,3 @@ def _absorption(ripples: Ripples) -> Array:
     near = [np.minimum(np.arange(n) + 0.5, n - np.arange(n) - 0.5) for n in (rows, columns)]
     deep = np.maximum(*(np.clip(1.0 - n / zone, 0.0, 1.0) for n in np.meshgrid(*near, indexing="ij")))
     return np.asarray(1.5 * np.log(1000.0) * ripples.speed_m_s / (zone * ripples.cell_m) * deep**2)
-
-
-def _path(path_m: npt.ArrayLike) -> npt.NDArray[np.float64]:
-    try:
-        path = np.asarray(path_m, np.float64)
-    except (TypeError, ValueError):
-        path = np.zeros(0)
-    if path.ndim != 2 or path.shape[1] != 2 or not len(path) or not np.isfinite(path).all():
-        raise SceneError("path_m", f"has shape {path.shape}", "give (N, 2) finite places (x, z)")
-    return path

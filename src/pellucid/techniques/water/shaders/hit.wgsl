@@ -1,4 +1,4 @@
-// What the search records for each pixel: kind, way to the surface, way within the water before it.
+// What the search records for each pixel: kind, way to the surface, normal of an open border.
 
 const WATER_NONE = 0u;   // nothing of the water
 const WATER_ABOVE = 1u;  // its surface, from above
