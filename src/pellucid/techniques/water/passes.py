@@ -151,9 +151,12 @@ class WaterTechnique:
             "opaque_color": (targets.color, self._target("opaque_color", COLOR_FORMAT, targets.size)),
             "opaque_depth": (targets.depth, self._target("opaque_depth", DEPTH_FORMAT, targets.size)),
         }
-        for drawn, copy in copies.values():
-            size = (*targets.size, 1)
-            encoder.copy_texture_to_texture({"texture": drawn}, {"texture": copy}, size)
+        # From outside, nothing of what was drawn before shows through but by look-ups.
+        outside = hidden_box(body.item, body.waves.limits_m, surroundings.view) is not None
+        for name, (drawn, copy) in copies.items():
+            if name == "opaque_depth" or not outside:
+                size = (*targets.size, 1)
+                encoder.copy_texture_to_texture({"texture": drawn}, {"texture": copy}, size)
         hits = self._target("water_hits", HIT_FORMAT, targets.size)
         bound = {**self._nothing, **body.bindings, **surroundings.bindings, **self._light.bindings(body)}
         bound |= {name: copy for name, (_, copy) in copies.items()}

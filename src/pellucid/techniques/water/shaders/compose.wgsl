@@ -16,10 +16,14 @@ fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let meets = hit.kind != WATER_NONE && hit.kind < WATER_FOG;
     radiance = select(radiance, vec3f(0.0), meets);
     radiance *= select(1.0, denser, hit.kind == WATER_OUT);
-    radiance += interface_radiance(hit, meets, p_ws, ray.direction);
-    if within {
-        let path = water_path(ray.origin, ray.direction, hit.t);
-        radiance = (path.transmittance * radiance + path.inscatter) / denser;
+    let light = interface_light(hit, meets, p_ws, ray.direction);
+    // The way behind the surface, then that before it: one loop, of which a camera in air takes one turn
+    for (var turn = select(1u, 0u, meets); turn < select(1u, 2u, within); turn++) {
+        let before = turn == 1u;
+        let way = select(light.way, ray.direction, before);
+        let path = water_path(select(p_ws, ray.origin, before), way, select(light.way_m, hit.t, before));
+        let behind = light.radiance + path.transmittance * light.wet + light.share * path.inscatter;
+        radiance = select(behind, (path.transmittance * radiance + path.inscatter) / denser, before);
     }
     if hit.kind == WATER_NONE {
         discard;

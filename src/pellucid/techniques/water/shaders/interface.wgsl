@@ -16,9 +16,18 @@ override WATER_DISPERSION: bool = false;
 
 const WATER_GRAZING = 1e-4;  // least cosine between normal and view
 
+// What a surface sends: radiance that goes no way through water, and what one ray in the water sees at its end
+struct InterfaceLight {
+    radiance: vec3f,
+    wet: vec3f,     // at the end of that ray, times its share
+    share: vec3f,   // of all that the ray brings
+    way: vec3f,     // its direction
+    way_m: f32,
+}
+
 // (1 - F) (n_i / n_t)^2 of what the refracted ray sees, F of what the mirrored one sees [born1999, 4.8.3]. All rays go
 // through one place.
-fn interface_radiance(hit: WaterHit, meets: bool, p_ws: vec3f, direction_ws: vec3f) -> vec3f {
+fn interface_light(hit: WaterHit, meets: bool, p_ws: vec3f, direction_ws: vec3f) -> InterfaceLight {
     let from_within = hit.kind == WATER_BELOW;
     let footprint = footprint_m(p_ws) * inverseSqrt(max(abs(direction_ws.y), 1e-3));
     let at = wave_point(p_ws.xz, footprint);
@@ -32,6 +41,7 @@ fn interface_radiance(hit: WaterHit, meets: bool, p_ws: vec3f, direction_ws: vec
     // None for pixels that show no surface: of loops a software driver executes one turn for them, of branches all
     let rays = select(0u, refracted_rays + 1u, meets);
     var radiance = vec3f(0.0);
+    var wet = InterfaceLight(vec3f(0.0), vec3f(0.0), vec3f(0.0), direction_ws, 0.0);
     var reflected = vec3f(0.0);
     for (var k = 0u; k < rays; k++) {
         let mirrors = k == refracted_rays;
@@ -52,7 +62,14 @@ fn interface_radiance(hit: WaterHit, meets: bool, p_ws: vec3f, direction_ws: vec
         let below = mirrors == from_within;
         let way = select(passing, water_mirrored(direction_ws, n_ws, hit.kind), mirrors);
         if any(weight > vec3f(0.0)) {
-            radiance += weight * water_look(p_ws, way, below);
+            let seen = seen_along(p_ws, way, below);
+            if WATER_DISPERSION {
+                radiance += weight * water_look(seen, p_ws, way, below);
+            } else if below {
+                wet = InterfaceLight(vec3f(0.0), weight * seen.radiance, weight, way, seen.distance_m);
+            } else {
+                radiance += weight * seen.radiance;
+            }
         }
     }
     if meets {
@@ -62,14 +79,15 @@ fn interface_radiance(hit: WaterHit, meets: bool, p_ws: vec3f, direction_ws: vec
             let covered = foam_cover(p_ws.xz, at.fold, footprint_m(p_ws));
             let cover = select(covered, 0.0, hit.kind == WATER_SIDE);
             radiance = mix(radiance, foam_radiance(p_ws, wave_normal(at.slope), from_within), cover);
+            wet.wet *= 1.0 - cover;
+            wet.share *= 1.0 - cover;
         }
     }
-    return radiance;
+    return InterfaceLight(radiance, wet.wet, wet.share, wet.way, wet.way_m);
 }
 
 // What a ray sees, through water where it is within
-fn water_look(p_ws: vec3f, direction_ws: vec3f, below: bool) -> vec3f {
-    let seen = seen_along(p_ws, direction_ws, below);
+fn water_look(seen: Seen, p_ws: vec3f, direction_ws: vec3f, below: bool) -> vec3f {
     if !below {
         return seen.radiance;
     }
