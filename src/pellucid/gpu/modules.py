@@ -23,6 +23,7 @@ ROOT = Path(__file__).resolve().parent.parent
 _IMPORT = re.compile(r"^\s*//!import\s+(\S+)\s*$")
 _STRUCT = re.compile(r"^\s*//!struct\s+(\w+)\s+from\s+([\w.]+)\s*$")
 _DIRECTIVE = re.compile(r"^\s*//!")
+_OVERRIDE = re.compile(r"\boverride (\w+):")
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 _BINDING = re.compile(
     r"((?:@(?:group|binding)\s*\(\s*\d+[iu]?\s*\)\s*){2})"
@@ -68,8 +69,13 @@ def source(name: str, root: Path = ROOT) -> ModuleSource:
 
 def declared(module: str, constants: Mapping[str, float]) -> dict[str, float]:
     """Of override constants those that a module declares: a pipeline takes no others."""
-    text = source(module).text
-    return {name: value for name, value in constants.items() if f"override {name}:" in text}
+    known = _overrides(module)
+    return {name: value for name, value in constants.items() if name in known}
+
+
+@cache
+def _overrides(module: str) -> frozenset[str]:
+    return frozenset(_OVERRIDE.findall(source(module).text))
 
 
 def _include(

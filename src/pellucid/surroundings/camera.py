@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -35,12 +36,12 @@ class View:
         """Whether all rays run parallel."""
         return bool(self.projection[3, 3] == 1.0)
 
-    @property
+    @cached_property
     def position(self) -> np.ndarray:
         """(3,) float64, where it stands in the world, metres."""
         return np.asarray(np.linalg.inv(self.view_from_world)[:3, 3])
 
-    @property
+    @cached_property
     def axes(self) -> np.ndarray:
         """(3, 3) float64, rows: the picture's right, its up and the way that it looks, unit vectors of the world."""
         world = np.linalg.inv(self.view_from_world)

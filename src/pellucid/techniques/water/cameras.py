@@ -79,12 +79,17 @@ def refraction_camera(
 
 def ray_of(view: View, ndc: tuple[float, float]) -> tuple[Array, Array]:
     """Origin and unit direction (3,) of the ray through a point of the picture, in halves of it, y up."""
-    right, up, forward = view.axes
-    x, y = np.asarray(ndc) * view.half_extent
+    origins, ways = rays_of(view, np.array([ndc]))
+    return origins[0], ways[0]
+
+
+def rays_of(view: View, ndc: Array) -> tuple[Array, Array]:
+    """Origins and unit directions (N, 3) of the rays through points (N, 2) of the picture, in halves of it, y up."""
+    across = (ndc * view.half_extent) @ view.axes[:2]
     if view.is_orthographic:
-        return view.position + x * right + y * up, forward
-    way = forward + x * right + y * up
-    return view.position, way / np.linalg.norm(way)
+        return view.position + across, np.broadcast_to(view.axes[2], across.shape)
+    ways = view.axes[2] + across
+    return np.broadcast_to(view.position, across.shape), ways / np.linalg.norm(ways, axis=1, keepdims=True)
 
 
 def turned(view: View, pivot: Array, before: Array, after: Array) -> View:
@@ -182,8 +187,7 @@ def holds(basin: Basin, point: Array) -> bool:
 def visible_surface(view: View, basin: Basin) -> tuple[Array, Array]:
     """Points (N, 3) of the level that a picture shows, and the unit directions (N, 3) in which it sees them."""
     inward = np.linspace(-1.0, 1.0, GRID)
-    rays = [ray_of(view, (x, y)) for y in inward for x in inward]
-    origins, ways = (np.array(part) for part in zip(*rays, strict=True))
+    origins, ways = rays_of(view, np.stack(np.meshgrid(inward, inward), axis=-1).reshape(-1, 2))
     with np.errstate(divide="ignore", invalid="ignore"):
         t = (basin.level_m - origins[:, 1]) / ways[:, 1]
     ok = np.isfinite(t) & (t > 0.0) & (t < FAR_M)

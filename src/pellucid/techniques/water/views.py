@@ -48,6 +48,8 @@ class SurfacePictures:
         self._colors: Any = None
         self._depths: Any = None
         self._stacks: list[Any] = []
+        self._wanted: tuple[Any, ...] = ()
+        self._taken: tuple[View | None, View | None] = (None, None)
 
     @property
     def bindings(self) -> dict[str, Any]:
@@ -82,7 +84,7 @@ class SurfacePictures:
         reach = lowest_and_highest(surroundings)
         basin = basin_of(item, quality, slope, reach)
         wanted = wanted_pictures(quality, surroundings.view, item.level)
-        taken = pictures(surroundings.view, basin, quality.cameras, quality.field_of_view)
+        taken = self._cameras(surroundings.view, basin, quality)
         self.views = tuple(v if w else None for v, w in zip(taken, wanted, strict=True))  # type: ignore[assignment]
         self.device.write(self._params, views_record(self.views, reach))
         clips = below(item.level + high + CLIP_MARGIN_M), above(item.level + low - CLIP_MARGIN_M)
@@ -102,6 +104,15 @@ class SurfacePictures:
                     kept=kept,
                     waters=layer == 0,
                 )
+
+    def _cameras(self, view: View, basin: Basin, quality: WaterQuality) -> tuple[View | None, View | None]:
+        """Those of before while the camera stands: they cost as much as a small picture."""
+        seen = view.view_from_world.tobytes(), view.projection.tobytes(), view.near_m, view.far_m
+        wanted = (*seen, basin, quality.cameras, quality.field_of_view)
+        if wanted != self._wanted:
+            self._wanted = wanted
+            self._taken = pictures(view, basin, quality.cameras, quality.field_of_view)
+        return self._taken
 
     def read(self, layer: int) -> tuple[np.ndarray, np.ndarray]:
         """(H, W, 3) radiance and (H, W) reversed depth of a picture, to look at."""
