@@ -85,9 +85,9 @@ fn march_meets(layer: u32, from_at: vec3f, to_at: vec3f, ends: vec2f, texel: f32
     let next = picture_metres(layer, picture_depth(layer, mix(from_at.xy, to_at.xy, ends.y + 1.5 * texel)));
     let before = picture_metres(layer, picture_depth(layer, mix(from_at.xy, to_at.xy, ends.x)));
     let most = MARCH_THICKNESS * ray;
-    let starts_behind = ends.x >= ends.y;
-    let near = select(most, 0.0, starts_behind) + MARCH_STEEPENING * abs(shown - next);
-    return ray - shown <= near || (!starts_behind && before - ray <= most);
+    let meets = ray - shown <= most + MARCH_STEEPENING * abs(shown - next) || before - ray <= most;
+    // What hides the very start lies between the camera and the surface, on the other side of it.
+    return ends.x < ends.y && meets;
 }
 
 // Secants between four texels each, which the ends need not lie on two sides of
