@@ -212,8 +212,7 @@ class Renderer:
         around = self.surroundings
         self._opaque.illuminate(encoder, around, timer)
         hidden = next((t.hides(around.view) for t in self._techniques.values() if hasattr(t, "hides")), None)
-        self._opaque.draw(encoder, targets.color, targets.depth, around, timer, hidden)
-        self._sky.draw(encoder, targets.color_view, targets.depth_view, around, timer)
+        self._opaque.draw(encoder, targets.color, targets.depth, around, timer, hidden, self._sky)
         nearest: dict[type, float] = {}
         for item in (o for o in scene.objects if type(o) in TECHNIQUES):
             nearest[type(item)] = min(nearest.get(type(item), np.inf), _distance(item, scene.camera))

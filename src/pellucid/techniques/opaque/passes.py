@@ -39,6 +39,7 @@ class Opaque:
         self._drawn: tuple[Surroundings, int] | None = None
         self._wanted: tuple[Any, ...] = ()
         self._kept: Targets | None = None
+        self._is_kept = False
 
     def prepare(self, surroundings: Surroundings) -> None:
         """Upload which light each shadow map belongs to."""
@@ -75,6 +76,7 @@ class Opaque:
         surroundings: Surroundings,
         timer: PassTimer | None = None,
         hidden: Box | None = None,
+        sky: Any = None,
     ) -> None:
         """Clear both targets and draw every mesh; a picture that is wanted for the second time running is kept.
 
@@ -83,20 +85,20 @@ class Opaque:
         color : rgba32float texture of the surroundings' size, receives linear radiance; 0 where nothing is.
         depth : depth32float texture, receives reversed depth; 0 where nothing is.
         hidden : nothing within this box is drawn, for another technique covers it from all sides.
+        sky : draws into the same targets what is behind the meshes, and is kept with them.
         """
         shown = Shown(hidden=hidden)
         in_water = not surroundings.submersion.is_above(surroundings.view.position)
         wanted = (*surroundings.state(in_water), surroundings.frame.tobytes(), shown)
         again, self._wanted = wanted == self._wanted, wanted
-        if not again:
-            self._kept = None
-            self._view.draw(
-                encoder, color.create_view(), depth.create_view(), surroundings, shown, timer=timer, waters=in_water
-            )
-            return
-        if self._kept is None:
-            self._kept = Targets(self.device, surroundings.size)
-            kept = self._kept.color_view, self._kept.depth_view
-            self._view.draw(encoder, *kept, surroundings, shown, timer=timer, waters=in_water)
-        for source, target in ((self._kept.color, color), (self._kept.depth, depth)):
-            encoder.copy_texture_to_texture({"texture": source}, {"texture": target}, (*surroundings.size, 1))
+        self._kept = (self._kept or Targets(self.device, surroundings.size)) if again else None
+        given = (self._kept.color, self._kept.depth) if self._kept else (color, depth)
+        if not (again and self._is_kept):
+            views = given[0].create_view(), given[1].create_view()
+            self._view.draw(encoder, *views, surroundings, shown, timer=timer, waters=in_water)
+            if sky is not None:
+                sky.draw(encoder, *views, surroundings, timer)
+        self._is_kept = again
+        if again:
+            for source, target in zip(given, (color, depth), strict=True):
+                encoder.copy_texture_to_texture({"texture": source}, {"texture": target}, (*surroundings.size, 1))
