@@ -19,7 +19,7 @@ import OpenImageIO
 
 DOCS = Path(__file__).resolve().parents[1] / "docs" / "images"
 THUMBNAIL = (400, 300)
-SHEET_WIDTH = 960
+SHEET_WIDTH = 800
 LIGHT = {"fluence": (288, 384), "intensity": (288, 384), "caustic": (512, 384)}
 RELIEF = {"example": (640, 480), "steps": (1280, 480)}
 SHEET = {"example": (480, 360), "errors": (880, 300)}
@@ -48,7 +48,7 @@ def write_gallery(demo: Path) -> None:
         write_jpeg(source, DOCS / "gallery" / f"{picture.name}.jpg", THUMBNAIL, 82)
     sheet = demo / "contact_sheet.png"
     spec = OpenImageIO.ImageBuf(str(sheet)).spec()
-    write_jpeg(sheet, DOCS / "demo.jpg", (SHEET_WIDTH, round(SHEET_WIDTH * spec.height / spec.width)), 78)
+    write_jpeg(sheet, DOCS / "demo.jpg", (SHEET_WIDTH, round(SHEET_WIDTH * spec.height / spec.width)), 74)
 
 
 def main() -> None:
