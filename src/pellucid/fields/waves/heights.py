@@ -47,11 +47,6 @@ class Heights(WaveSource):
         self._limits = float(pictures.min()), float(pictures.max())
 
     @property
-    def tile_m(self) -> tuple[float, float]:
-        """Size along x and z, metres."""
-        return self._tile
-
-    @property
     def limits_m(self) -> tuple[float, float]:
         """Lowest and highest height of all pictures, metres."""
         return self._limits

@@ -55,11 +55,6 @@ class Sum(WaveSource):
         self.shape = min(rows, arguments.LARGEST), min(columns, arguments.LARGEST)
 
     @property
-    def tile_m(self) -> tuple[float, float]:
-        """Size along x and z, metres."""
-        return self._tile
-
-    @property
     def limits_m(self) -> tuple[float, float]:
         """Lowest and highest height, metres."""
         low, high = (sum(layer.limits_m[side] for layer in self.layers) for side in (0, 1))

@@ -65,11 +65,6 @@ class MeshWaves(WaveSource):
         self.surface(0.0)
 
     @property
-    def tile_m(self) -> tuple[float, float]:
-        """Size along x and z, metres."""
-        return self._tile
-
-    @property
     def limits_m(self) -> tuple[float, float]:
         """Lowest and highest height, metres; heights beyond are cut off."""
         return self._limits

@@ -128,11 +128,6 @@ class Ocean(WaveSource):
         return Sum(*layers)
 
     @property
-    def tile_m(self) -> tuple[float, float]:
-        """Size along x and z, metres."""
-        return self._tile
-
-    @property
     def limits_m(self) -> tuple[float, float]:
         """Lowest and highest height that is given, metres: `DEVIATIONS` from the level."""
         reach = DEVIATIONS * self.variance_m2**0.5

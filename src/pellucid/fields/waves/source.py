@@ -61,12 +61,13 @@ class WaveSource(ABC):
     shape: tuple[int, int]
     periodic: bool
 
+    _tile: tuple[float, float]
     _kept: tuple[Any, WaveSurface] | None = None
 
     @property
-    @abstractmethod
     def tile_m(self) -> tuple[float, float]:
         """Size along x and z, metres."""
+        return self._tile
 
     @property
     @abstractmethod

@@ -73,11 +73,6 @@ class Sine(WaveSource):
         self._prepare(**self._together())
 
     @property
-    def tile_m(self) -> tuple[float, float]:
-        """Size along x and z, metres."""
-        return self._tile
-
-    @property
     def limits_m(self) -> tuple[float, float]:
         """Lowest and highest height, metres: all crests together."""
         reach = float(self.amplitudes_m.sum()) * (1.0 + 1e-6)
