@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from marked_page import write_between
 
 import pellucid as pl
 from pellucid.gpu import Device
@@ -130,10 +131,7 @@ def main() -> int:
     if not parser.parse_args().write:
         print(table)
         return 0
-    text = PAGE.read_text(encoding="utf-8")
-    before, _, rest = text.partition(MARKS[0])
-    after = rest.partition(MARKS[1])[2]
-    PAGE.write_text(f"{before}{MARKS[0]}\n{table}\n{MARKS[1]}{after}", encoding="utf-8")
+    write_between(PAGE, MARKS, table)
     return 0
 
 

@@ -14,6 +14,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from marked_page import write_between
+
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "speed.md"
 MARKS = "<!-- lake: written by tools/water_speed_table.py -->", "<!-- end of lake -->"
 HEAD = "| row | median, ms | fastest | slowest | fps | processor, ms | ratio | error | largest passes |"
@@ -55,10 +57,7 @@ def main() -> int:
     if not asked.write:
         print(lines)
         return 0
-    text = PAGE.read_text(encoding="utf-8")
-    before, _, rest = text.partition(MARKS[0])
-    after = rest.partition(MARKS[1])[2]
-    PAGE.write_text(f"{before}{MARKS[0]}\n{lines}\n{MARKS[1]}{after}", encoding="utf-8")
+    write_between(PAGE, MARKS, lines)
     return 0
 
 
