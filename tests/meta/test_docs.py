@@ -92,26 +92,29 @@ def test_the_example_of_the_page_on_light_runs(capsys: pytest.CaptureFixture[str
     assert capsys.readouterr().out.startswith("brightest at")
 
 
-def test_the_example_of_the_page_on_reliefs_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    small = (ROOT / "docs" / "relief.md").read_text("utf-8").split("```python\n")[1].split("```")[0]
-    for written, tried in (("size=(800, 600)", "size=(48, 36)"), ("samples=4", "samples=1"), ("=256", "=64")):
-        assert written in small
-        small = small.replace(written, tried)
-    monkeypatch.chdir(tmp_path)
+def first_example(page: str, smaller: tuple[tuple[str, str], ...]) -> dict[str, Any]:
+    """What the first Python block of a page leaves behind, with numbers in it made smaller."""
+    text = (ROOT / "docs" / page).read_text("utf-8").split("```python\n")[1].split("```")[0]
+    for written, tried in smaller:
+        assert written in text
+        text = text.replace(written, tried)
     values: dict[str, Any] = {}
-    exec(compile(small, "relief.md", "exec"), values)
+    exec(compile(text, page, "exec"), values)
+    return values
+
+
+def test_the_example_of_the_page_on_reliefs_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    smaller = (("size=(800, 600)", "size=(48, 36)"), ("samples=4", "samples=1"), ("=256", "=64"))
+    values = first_example("relief.md", smaller)
     assert [p.name for p in tmp_path.iterdir()] == ["puddles.png"]
     assert values["frame"].depth.max() < 4.0 and values["frame"].radiance.std() > 0.01
 
 
 def test_the_example_of_the_page_on_sheets_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    small = (ROOT / "docs" / "sheet.md").read_text("utf-8").split("```python\n")[1].split("```")[0]
-    for written, tried in (("size=(640, 480)", "size=(48, 36)"), ("samples=4", "samples=1"), ("size=512", "size=64")):
-        assert written in small
-        small = small.replace(written, tried)
     monkeypatch.chdir(tmp_path)
-    values: dict[str, Any] = {}
-    exec(compile(small, "sheet.md", "exec"), values)
+    smaller = (("size=(640, 480)", "size=(48, 36)"), ("samples=4", "samples=1"), ("size=512", "size=64"))
+    values = first_example("sheet.md", smaller)
     assert [p.name for p in tmp_path.iterdir()] == ["sheet.png"]
     assert np.isfinite(values["frame"].depth).mean() > 0.3 and values["frame"].radiance.std() > 0.01
 

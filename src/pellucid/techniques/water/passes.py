@@ -140,10 +140,8 @@ class WaterTechnique:
             self._draw(encoder, body, targets, surroundings, timer)
 
     def _draw(self, encoder: Any, body: Body, targets: Targets, surroundings: Surroundings, timer: Any) -> None:
-        top_m, clip = (
-            body.item.level + body.waves.range_m[1],
-            surroundings.frame["clip_from_world"].T.astype(np.float64),
-        )
+        top_m = body.item.level + body.waves.range_m[1]
+        clip = surroundings.frame["clip_from_world"].T.astype(np.float64)
         region = covered(*body.item.bounds_m, top_m, clip, targets.size)
         if 0 in region[2:]:
             return
