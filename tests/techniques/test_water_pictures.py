@@ -268,3 +268,19 @@ def test_a_sun_that_is_kept_apart_lights_as_one_that_is_not(renderer: Any, monke
     for one, other in zip(apart, pictures(), strict=True):
         assert np.abs(one - other).mean() < 2e-3 * other.mean()
     assert np.abs(apart[0] - apart[2]).mean() > 1e-2 * apart[0].mean()
+
+
+def test_what_shines_by_itself_is_no_less_under_waves(renderer: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A ball that glows, in the dark: waves that stand over it take nothing from what leaves it, only on its way."""
+    ball = pl.Mesh.sphere(0.6, position=(0.4, -0.7, 1.0), base_color=(0, 0, 0), specular=0.0, emission=(1.0, 2.0, 3.0))
+    waves = Sine(amplitude_m=0.03, wavelength_m=1.5)
+    pond = pl.Water(extent_m=24.0, medium="coastal", waves=waves, technique="fast")
+    sun = pl.DirectionalLight((-1.0, -2.0, -0.5), irradiance=0.0)
+    dark = pl.Environment.constant(0.0)
+    scene = pl.Scene(camera=CAMERA, environment=dark, lights=[sun], objects=[bottom("level"), ball, pond])
+    apart = renderer.render(scene, SIZE, time=0.3).radiance
+    monkeypatch.setattr(Surroundings, "sun_may_be_apart", False)
+    renderer.render(scene, SIZE, time=0.4)  # what is kept goes
+    whole = renderer.render(scene, SIZE, time=0.3).radiance
+    assert whole.max() > 0.5
+    np.testing.assert_allclose(apart, whole, rtol=2e-3, atol=1e-4)  # half floats

@@ -3,7 +3,7 @@
 //!import surroundings/shaders/full_picture
 
 struct ShadedApart {
-    @location(0) rest: vec4f,
+    @location(0) rest: vec4f,  // all other light; the share of it that came from elsewhere, and is not the surface's own
     @location(1) sun: vec4f,  // what a surface sends for the share of the lamp that comes to it; its shadow
 }
 
@@ -18,7 +18,9 @@ fn fs_main(@builtin(position) position: vec4f) -> ShadedApart {
     let view_ws = -ray.direction;
     let surface = surface_at(triangle, vec2f(u, clamp(found.z, 0.0, 1.0 - u)), view_ws);
     let shaded = shade_parts(surface, triangle, view_ws);
-    return ShadedApart(vec4f(shaded.radiance, 1.0), vec4f(min(shaded.sun, vec3f(SHADED_MAX)), shaded.sun_seen));
+    let own = materials[surface.material].emission;
+    let lit = 1.0 - saturate(dot(own, vec3f(1.0)) / max(dot(shaded.radiance, vec3f(1.0)), 1e-30));
+    return ShadedApart(vec4f(shaded.radiance, lit), vec4f(min(shaded.sun, vec3f(SHADED_MAX)), shaded.sun_seen));
 }
 
 const SHADED_MAX = 60000.0;  // below the largest half float

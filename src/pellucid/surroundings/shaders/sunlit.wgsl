@@ -18,7 +18,8 @@ fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let light = submerged_sun();
     let direction = submerged_direction(lights[light].direction, submersion.index[0].g);
     let share = submerged_share(light, p_ws, direction, 0u, sun.a);
-    return vec4f(textureLoad(shaded_rest, pixel, 0).rgb * sunlit_depth(p_ws) + sun.rgb * share, 1.0);
+    let rest = textureLoad(shaded_rest, pixel, 0);
+    return vec4f(rest.rgb * mix(vec3f(1.0), sunlit_depth(p_ws), rest.a) + sun.rgb * share, 1.0);
 }
 
 // What waves take from the light of the sky, which was worked out for level water; 1 where there is none
