@@ -126,11 +126,11 @@ def test_a_changed_layer_keeps_its_other_maps() -> None:
 
 
 def test_every_technique_has_a_quality() -> None:
-    asked = pl.ReliefQuality(shadows="soft", occlusion="fragment", caustics=True)
-    found = {name: quality_of(name, asked) for name in TECHNIQUES}
+    found = {name: quality_of(name, pl.ReliefQuality()) for name in TECHNIQUES}
     assert all(found[step].shadows == found[step].occlusion == "none" for step in STEPS[:5])
-    assert found["occlusion"].occlusion == "fragment" and not found["occlusion"].hue and found["occlusion_hue"].hue
-    assert found["best"] == asked
+    assert found["occlusion"].occlusion == "texture" and found["occlusion_thesis"].occlusion == "fragment"
+    assert not found["occlusion"].hue and found["occlusion_hue"].hue
+    assert found["best"] == pl.ReliefQuality()
     assert found["relief_thesis"].search == "linear" and found["best_thesis"].reflection == "plane"
 
 

@@ -62,6 +62,14 @@ def test_maps_of_different_sizes_are_brought_together(renderer: pl.Renderer) -> 
     np.testing.assert_allclose(one, many, rtol=1e-3)
 
 
+def test_a_layer_that_is_not_drawn_focuses_no_light(renderer: pl.Renderer) -> None:
+    solid, lamp = pl.ReliefLayer(0.05 * waves(32, 32)), pl.DirectionalLight(direction=(-1, -1, 0))
+    item = pl.ReliefSurface.plane(1.0, solid, pl.ReliefLayer(0.2), technique="relief")
+    asked = item.replace(quality=pl.ReliefQuality(caustics=True))
+    plain, focused = (drawn(renderer, surface, lights=[lamp]).radiance for surface in (item, asked))
+    np.testing.assert_array_equal(plain, focused)
+
+
 def test_what_moves_uploads_its_parameters_only(renderer: pl.Renderer, monkeypatch: pytest.MonkeyPatch) -> None:
     item = pl.ReliefSurface.plane(
         4.0, pl.ReliefLayer(0.02 * waves(32, 32)), pl.ReliefLayer(0.03), technique="two_layer"

@@ -191,10 +191,11 @@ def test_a_quality_that_cannot_be_is_named(fields: dict[str, Any], where: str) -
 
 
 def test_techniques_choose_what_quality_leaves_open() -> None:
-    from pellucid.scene.water_quality import quality_of
+    from pellucid.scene.water_quality import TECHNIQUES, quality_of
 
-    assert quality_of("best", pl.WaterQuality()) == pl.WaterQuality()
-    assert quality_of("mihalik", pl.WaterQuality()) == pl.WaterQuality.of("mihalik")
+    assert all(quality_of(t, pl.WaterQuality()) == pl.WaterQuality.of(t) for t in TECHNIQUES)
+    named = [pl.WaterQuality.of(t) for t in TECHNIQUES]
+    assert all(quality_of(t, quality) == quality for t in TECHNIQUES for quality in named)
     assert quality_of("mihalik", pl.WaterQuality(reflection="environment")).reflection == "environment"
     exact = pl.WaterQuality.of("mihalik", fresnel="exact")
     assert exact.fresnel == "exact" and quality_of("best", exact) == exact

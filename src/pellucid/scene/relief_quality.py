@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 from pellucid.errors import SceneError
 from pellucid.scene import checks
-from pellucid.scene.placement import Value, store
+from pellucid.scene.choices import Choices
+from pellucid.scene.placement import store
 
 SEARCHES = ("linear", "distance", "cone", "max_mip")
 REFRACTIONS = ("search", "plane")
@@ -19,9 +20,11 @@ STEPS = ("color", "normal", "offset", "relief", "two_layer", "occlusion", "occlu
 TECHNIQUES = (*STEPS, *(f"{step}_thesis" for step in STEPS))
 
 
-@dataclass(frozen=True)
-class ReliefQuality(Value):
+@dataclass(frozen=True, eq=False, repr=False)
+class ReliefQuality(Choices):
     """Searches along rays, and what light does in the relief.
+
+    What is given counts in every technique of the surface; the technique chooses what is left out.
 
     Parameters
     ----------
@@ -132,7 +135,9 @@ _THESIS = {
 
 
 def quality_of(technique: str, quality: ReliefQuality) -> ReliefQuality:
-    """What a named technique makes of a quality: the steps of [timonen2006, table 1] take away what comes later.
+    """What a named technique makes of a quality: its own choice of the fields that were not given.
+
+    The steps of [timonen2006, table 1] take away what comes later.
 
     Parameters
     ----------
@@ -144,9 +149,9 @@ def quality_of(technique: str, quality: ReliefQuality) -> ReliefQuality:
     if rank < STEPS.index("occlusion"):
         changes |= {"shadows": "none", "occlusion": "none", "caustics": False}
     elif step != "best":
-        chosen = quality.occlusion if quality.occlusion != "none" else "texture"
-        changes |= {"occlusion": "fragment" if thesis else chosen, "hue": step == "occlusion_hue", "caustics": False}
+        changes |= {"occlusion": "fragment" if thesis else "texture", "caustics": False}
+        changes |= {"hue": step == "occlusion_hue"}
         changes |= {"shadows": "hard"} if thesis else {}
     elif thesis:
         changes |= {"occlusion": "fragment", "hue": True}
-    return quality.replace(**changes)
+    return quality.fill_in(**changes)

@@ -15,6 +15,7 @@ from pellucid import media
 from pellucid.errors import SceneError
 from pellucid.media import Medium, WaterBody
 from pellucid.scene.brdf import GGX, TabulatedBRDF
+from pellucid.scene.choices import Choices
 from pellucid.scene.environment import Environment
 from pellucid.scene.lights import AreaLight, DirectionalLight, PointLight
 from pellucid.scene.mesh import Mesh
@@ -312,10 +313,12 @@ def _stated(value: Any, names: Any) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    """Tuples as lists, dataclasses as the fields that differ from their defaults."""
+    """Tuples as lists, dataclasses as the fields that differ from their defaults, or were given."""
     if isinstance(value, Mapping):
         return {key: _plain(item) for key, item in value.items()}
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        if isinstance(value, Choices):
+            return {name: _plain(getattr(value, name)) for name in sorted(value.given)}
         return _stated(value, [f.name for f in dataclasses.fields(value)])
     if isinstance(value, tuple | list):
         return [_plain(item) for item in value]

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import Any, Self
 
 from pellucid.scene import checks
-from pellucid.scene.placement import Value, store
+from pellucid.scene.choices import Choices
+from pellucid.scene.placement import store
 
 REFRACTIONS = ("rays", "march", "iteration")
 REFLECTIONS = ("rays", "march", "point", "environment")
@@ -21,9 +22,11 @@ CAMERAS = ("fitted", "mihalik")
 TECHNIQUES = ("best", "fast", "mihalik")
 
 
-@dataclass(frozen=True)
-class WaterQuality(Value):
+@dataclass(frozen=True, eq=False, repr=False)
+class WaterQuality(Choices):
     """What a ray that meets water sees, and what light does in it.
+
+    What is given counts in every technique of the water; the technique chooses what is left out.
 
     Parameters
     ----------
@@ -85,14 +88,14 @@ class WaterQuality(Value):
 
     @classmethod
     def of(cls, technique: str, **fields: Any) -> Self:
-        """The quality of a named technique, with some fields otherwise; for Water(technique="best").
+        """The quality of a named technique, with some fields otherwise; draws so whatever the water's technique is.
 
         Parameters
         ----------
         technique : ``"best"``, ``"fast"`` or ``"mihalik"``. fields : any field.
         """
         known = checks.choice("water_quality.technique", technique, TECHNIQUES)
-        return cls(**(_PRESETS[known] | fields))
+        return cls(**(_preset(known) | fields))
 
     def __post_init__(self) -> None:
         for name, options in _CHOICES.items():
@@ -155,14 +158,17 @@ _PRESETS: dict[str, dict[str, Any]] = {
 
 
 def quality_of(technique: str, quality: WaterQuality) -> WaterQuality:
-    """What a named technique makes of a quality: its own choice of every field that is left as it comes.
-
-    A field that differs from its default is the user's and stays.
+    """What a named technique makes of a quality: its own choice of every field that was not given.
 
     Parameters
     ----------
     technique : one of ``TECHNIQUES``.
     """
+    return quality.fill_in(**_preset(technique))
+
+
+def _preset(technique: str) -> dict[str, Any]:
+    """The choice of a technique for every field that any technique has a choice of its own for."""
     plain = WaterQuality()
-    changes = _PRESETS[technique]
-    return quality.replace(**{k: v for k, v in changes.items() if getattr(quality, k) == getattr(plain, k)})
+    chosen = {name: getattr(plain, name) for preset in _PRESETS.values() for name in preset}
+    return chosen | _PRESETS[technique]

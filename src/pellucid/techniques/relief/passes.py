@@ -267,6 +267,8 @@ class ReliefTechnique:
             # Bounds are new in a moment; maps of free space are not, and find nothing that bounds do not.
             quality = quality.replace(search="max_mip")
         two_layers = item.draws_translucent
+        if not two_layers:
+            quality = quality.replace(caustics=False)  # nothing focuses light
         on_device = _moves(item) and device_moves(self.device, item, quality)
         maps_key = [*_maps_key(item, shape.tile_m), quality.search, quality.complexity, two_layers, on_device]
         alike = next((b for b in before if _same(b.maps_key, maps_key)), None)
