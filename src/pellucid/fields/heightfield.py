@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pellucid.errors import SceneError
+from pellucid.fields.numbers import real_array
 
 Array = npt.NDArray[Any]
 
@@ -245,7 +246,7 @@ def complexity_map(heights_m: npt.ArrayLike, radius: int = 4, tiling: bool = Tru
 
 
 def _checked(heights: npt.ArrayLike, field: str) -> npt.NDArray[np.float64]:
-    h = np.asarray(heights, dtype=np.float64)
+    h = np.asarray(real_array(field, heights), dtype=np.float64)
     if h.ndim != 2 or not h.size:
         raise SceneError(field, f"has shape {h.shape}", "give an array (H, W)")
     if not np.isfinite(h).all():

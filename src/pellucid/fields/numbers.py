@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from pellucid.errors import SceneError
 
@@ -21,6 +22,22 @@ def number(name: str, value: Any, low: float = -np.inf, high: float = np.inf, un
     if not (np.isfinite(value) and low <= value <= high):
         raise SceneError(name, f"is {float(value):g}", f"use {_range(low, high, unit)}")
     return float(value)
+
+
+def real_array(name: str, values: npt.ArrayLike) -> npt.NDArray[Any]:
+    """An array of real numbers of any shape; complex ones would lose their imaginary part without a word.
+
+    Raises
+    ------
+    SceneError : it is none.
+    """
+    try:
+        array = np.asarray(values)
+    except ValueError:  # rows of different lengths
+        raise SceneError(name, "is no array: its rows differ in length", "give an array of numbers") from None
+    if array.dtype.kind not in "fiub":
+        raise SceneError(name, f"is of type {array.dtype}", "give an array of real numbers")
+    return array
 
 
 def _range(low: float, high: float, unit: str) -> str:

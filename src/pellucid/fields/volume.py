@@ -14,6 +14,7 @@ from pellucid.errors import SceneError
 from pellucid.media import Medium
 from pellucid.optics.dispersion import LAMBDA_D_NM
 
+from .numbers import real_array
 from .sampling import Extent, FieldFunction, box_edges, check_resolution, check_size, sampled, sampling
 
 MOST_REGIONS = 4
@@ -163,7 +164,7 @@ class Volume:
         extent_m : edges (x, y, z), or one number: the longest edge, with cubic voxels.
         others : as in `Volume`.
         """
-        index = _numbers("n", n)
+        index = real_array("n", n)
         if index.ndim not in (3, 4) or (index.ndim == 4 and index.shape[3] != 3):
             raise SceneError("n", f"has shape {index.shape}", "give (Z, Y, X) or (Z, Y, X, 3)")
         check_size("n", index.shape[:3])
@@ -463,22 +464,11 @@ def _common_shape(volume: Volume) -> tuple[int, int, int]:
     return z, y, x
 
 
-def _numbers(name: str, values: npt.ArrayLike) -> npt.NDArray[Any]:
-    """An array of real numbers; complex ones would lose their imaginary part without a word."""
-    try:
-        array = np.asarray(values)
-    except ValueError:  # rows of different lengths
-        raise SceneError(name, "is no array: its rows differ in length", "give an array of numbers") from None
-    if array.dtype.kind not in "fiub":
-        raise SceneError(name, f"is of type {array.dtype}", "give an array of real numbers")
-    return array
-
-
 def _voxels(
     name: str, values: npt.ArrayLike, channels: int | None, shape: tuple[int, int, int] | None = None
 ) -> Voxels:
     """A checked, contiguous, read-only float32 copy. `channels`: None for a scalar, -1 for a scalar or three."""
-    array = _numbers(name, values)
+    array = real_array(name, values)
     allowed: list[tuple[int, ...]] = [(), (3,)] if channels == -1 else [() if channels is None else (channels,)]
     if array.ndim < 3 or array.shape[3:] not in allowed or (shape is not None and array.shape[:3] != shape):
         where = "Z, Y, X" if shape is None else ", ".join(map(str, shape))

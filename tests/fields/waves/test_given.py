@@ -32,6 +32,21 @@ def test_heights_at_rest_stay() -> None:
     np.testing.assert_allclose(waves.surface(0.0).slopes, np.broadcast_to((1.0, 4.0), (3, 4, 2)))
 
 
+@pytest.mark.parametrize(
+    ("heights", "said"),
+    [
+        (np.ones((3, 3), complex), "is of type complex128"),
+        ("high", "is of type <U4"),
+        ([[0.0, 1.0], [0.0]], "differ in length"),
+        (np.zeros(3), r"have shape \(3,\)"),
+        ([[0.0, np.inf], [0.0, 0.0]], "1 values that are not finite"),
+    ],
+)
+def test_heights_that_are_none_are_refused_for_what_they_are(heights: Any, said: str) -> None:
+    with pytest.raises(SceneError, match=rf"^heights: .*{said}"):
+        Heights(heights, 1.0)
+
+
 def test_pictures_in_time_are_linear_between_and_may_repeat() -> None:
     pictures = np.zeros((3, 4, 4)) + np.array([0.0, 1.0, 4.0])[:, None, None]
     waves, looped = (Heights(pictures, 1.0, [1.0, 2.0, 4.0], loop=loop) for loop in (False, True))
@@ -78,6 +93,7 @@ def test_meshes_that_are_no_heights_are_refused() -> None:
     refused(whole[:, :2], faces, r"^mesh\.vertices: ")
     refused(np.where(whole == 2.0, np.nan, whole), faces, r"^mesh\.vertices: ")
     refused(whole, faces + 1, r"^mesh\.faces: ")
+    refused(whole + 0j, faces, r"^mesh\.vertices: is of type complex128")
     for given, options, field in (
         (lambda time: (whole, faces), {}, "limits_m"),
         ([(whole, faces)] * 2, {}, "times_s"),

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pellucid.errors import SceneError
+from pellucid.fields.numbers import real_array
 
 
 @dataclass(frozen=True)
@@ -50,10 +51,7 @@ def places_of(path_m: npt.ArrayLike) -> npt.NDArray[np.float64]:
     ------
     SceneError : it is no list of finite pairs.
     """
-    try:
-        path = np.asarray(path_m, np.float64)
-    except (TypeError, ValueError):
-        path = np.zeros(0)
+    path = real_array("path_m", path_m).astype(np.float64)
     if path.ndim != 2 or path.shape[1] != 2 or not len(path) or not np.isfinite(path).all():
         raise SceneError("path_m", f"has shape {path.shape}", "give (N, 2) finite places (x, z)")
     return path

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pellucid.errors import SceneError
+from pellucid.fields.numbers import real_array
 from pellucid.fields.waves import arguments
 from pellucid.fields.waves.source import Singles, WaveSource, WaveSurface, difference_slopes
 
@@ -78,10 +79,7 @@ def between(times_s: npt.NDArray[np.float64], time_s: float, loop: bool) -> tupl
 
 
 def _pictures(heights: Any) -> Singles:
-    try:
-        given = np.asarray(heights).astype(np.float32, casting="same_kind" if np.iscomplexobj(heights) else "unsafe")
-    except (TypeError, ValueError):
-        given = np.zeros(0, np.float32)
+    given = real_array("heights", heights).astype(np.float32)
     if given.ndim not in (2, 3) or not given.size:
         raise SceneError("heights", f"have shape {given.shape}", "give an array (H, W), or (T, H, W) over time")
     if not np.isfinite(given).all():

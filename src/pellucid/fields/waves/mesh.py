@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pellucid.errors import SceneError
+from pellucid.fields.numbers import real_array
 from pellucid.fields.waves import arguments
 from pellucid.fields.waves.heights import between
 from pellucid.fields.waves.source import Singles, WaveSource, WaveSurface, difference_slopes
@@ -170,10 +171,7 @@ def _meshes(given: Any) -> tuple[tuple[Array, Array], ...]:
 
 
 def _mesh(vertices: Any, faces: Any) -> tuple[Array, Array]:
-    try:
-        v, f = np.asarray(vertices, np.float64), np.asarray(faces)
-    except (TypeError, ValueError):
-        v, f = np.zeros(0), np.zeros(0)
+    v, f = real_array("mesh.vertices", vertices).astype(np.float64), real_array("mesh.faces", faces)
     if v.ndim != 2 or v.shape[1:] != (3,) or not len(v) or not np.isfinite(v).all():
         raise SceneError("mesh.vertices", f"have shape {v.shape}", "give (V, 3) finite places in metres")
     if f.ndim != 2 or f.shape[1:] != (3,) or not len(f) or f.dtype.kind not in "iu":
