@@ -10,7 +10,7 @@ import pytest
 
 import pellucid as pl
 from pellucid.fields.waves import Sine
-from pellucid.gpu import Device
+from pellucid.gpu import Device, RenderPass
 from pellucid.optics.snell import refract
 from pellucid.scene.water_quality import WaterQuality
 from pellucid.surroundings import Query, Surroundings
@@ -18,6 +18,7 @@ from pellucid.surroundings.camera import view_of
 from pellucid.techniques.water.cameras import Basin, refraction_camera, visible_surface
 from pellucid.techniques.water.passes import WaterTechnique
 from pellucid.techniques.water.picture_query import SOMETHING, UNKNOWN, PictureQuery, unprojected
+from pellucid.techniques.water.prepare import surfaces_of, wave_maps
 from pellucid.techniques.water.reference_pictures import first_triangle, iterate
 from pellucid.techniques.water.views import SurfacePictures
 
@@ -284,3 +285,30 @@ def test_what_shines_by_itself_is_no_less_under_waves(renderer: Any, monkeypatch
     whole = renderer.render(scene, SIZE, time=0.3).radiance
     assert whole.max() > 0.5
     np.testing.assert_allclose(apart, whole, rtol=2e-3, atol=1e-4)  # half floats
+
+
+def test_pictures_stay_while_only_waves_move(renderer: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The steepest slope of the moment would move the cameras: here it crosses a step between the frames."""
+    waves = pl.waves.Ocean(3.0, tile_m=12.0, shape=(64, 64), fetch_m=500.0, seed=2)
+    lake = pl.Water(extent_m=24.0, medium="coastal", waves=waves, technique="fast")
+    slopes = [wave_maps(lake, surfaces_of(waves, time)).slope for time in (0.0, 0.3, 0.6)]
+    assert len({np.ceil(4.0 * np.log2(slope)) for slope in slopes}) > 1
+    ball = pl.Mesh.sphere(0.6, position=(0.4, 0.1, 1.0))
+    sun = pl.DirectionalLight((-1.0, -2.0, -0.5))
+    scene = pl.Scene(CAMERA, pl.Environment.sky(), [sun], [bottom("hills"), ball, lake])
+    drawn: list[str] = []
+    run = RenderPass.run
+
+    def counted(self: RenderPass, *given: Any, label: str = "", **named: Any) -> None:
+        drawn.append(label)
+        run(self, *given, label=label, **named)
+
+    monkeypatch.setattr(RenderPass, "run", counted)
+    renderer.render(scene, SIZE, time=0.0)
+    assert {"water picture above visibility", "water picture below shading"} <= set(drawn)
+    drawn.clear()
+    for time in (0.3, 0.6):
+        renderer.render(scene, SIZE, time=time)
+    assert "water shade" in drawn and "water picture below sun" in drawn
+    pictures = {label for label in drawn if label.startswith("water picture")}
+    assert pictures <= {"water picture below sun", "water picture below sky"}

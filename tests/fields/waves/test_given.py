@@ -113,6 +113,10 @@ def test_a_sum_adds_its_layers_up() -> None:
     for found, value in zip(both.at(x, z, 1.0), wanted, strict=True):
         np.testing.assert_allclose(found, value, atol=0.003 if value.ndim == 2 else 0.02)
     assert both.limits_m == pytest.approx((-0.12, 0.12))
+    assert (
+        both.steepest == pytest.approx(swell.steepest + chop.steepest)
+        and Sum(swell, Ripples((8, 8), 1.0)).steepest is None
+    )
 
 
 def test_drops_in_a_sum_fall_into_its_ripples() -> None:

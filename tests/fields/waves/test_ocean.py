@@ -27,6 +27,15 @@ def test_an_ocean_is_dynamic_heights() -> None:
     assert low < heights.min() and heights.max() < high
 
 
+def test_the_steepest_slope_is_that_of_one_cell() -> None:
+    """Extremes of so many normal numbers spread by a sixth round what is expected once."""
+    ocean = sea(shape=(128, 128))
+    found = [np.hypot(*np.moveaxis(ocean.surface(4.0 * n).slopes, -1, 0)) for n in range(16)]
+    assert np.mean([slopes.max() for slopes in found]) == pytest.approx(ocean.steepest, rel=0.08)
+    assert 2 < np.mean([(slopes > 0.85 * ocean.steepest).sum() for slopes in found]) < 40
+    assert sea(wind_m_s=0.0).steepest == 0.0
+
+
 @pytest.mark.parametrize("spectrum", spectra.SPECTRA)
 def test_the_variance_of_heights_is_that_of_the_spectrum(spectrum: str) -> None:
     """Mean over 64 seeds. A tile's mean square is a sum of chi-squared numbers: its own spread gives the tolerance."""

@@ -21,6 +21,7 @@ def test_a_sine_is_one() -> None:
     found = sine.surface(3.0)
     np.testing.assert_allclose(found.heights, np.tile(1.0 + 0.1 * np.cos(phase), (8, 1)), atol=2e-6)
     np.testing.assert_allclose(found.slopes[..., 0], np.tile(-0.1 * k * np.sin(phase), (8, 1)), atol=2e-6)
+    assert sine.steepest == pytest.approx(0.1 * k)
     assert not found.slopes[..., 1].any() and sine.limits_m == pytest.approx((0.9, 1.1))
 
 
@@ -58,6 +59,9 @@ def test_a_trochoid_has_its_shape(steepness: float) -> None:
     assert found.fold is not None
     np.testing.assert_allclose(found.fold[0], jacobian, atol=0.01)
     slope = -steepness * np.sin(k * origin) / jacobian
+    assert wave.steepest == pytest.approx(
+        np.abs(-steepness * np.sin(k * rest) / (1.0 - steepness * np.cos(k * rest))).max()
+    )
     shallow = jacobian > 0.3
     np.testing.assert_allclose(found.slopes[0, shallow, 0], slope[shallow], atol=0.02)
 

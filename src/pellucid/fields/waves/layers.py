@@ -61,6 +61,12 @@ class Sum(WaveSource):
         return low, high
 
     @property
+    def steepest(self) -> float | None:
+        """Steepest slope that is to be expected, None where that of a layer is not known beforehand."""
+        slopes = [layer.steepest for layer in self.layers]
+        return None if None in slopes else sum(slope for slope in slopes if slope is not None)
+
+    @property
     def short_slopes(self) -> tuple[float, float, float]:
         """Mean squares of slopes of the waves that are too short for the grids."""
         xx, xz, zz = (sum(layer.short_slopes[n] for layer in self.layers) for n in range(3))

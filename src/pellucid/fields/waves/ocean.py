@@ -134,6 +134,15 @@ class Ocean(WaveSource):
         return self.level_m - reach, self.level_m + reach
 
     @property
+    def steepest(self) -> float:
+        """Root of the mean square of slopes, times that of the logarithm of the number of cells.
+
+        As slopes are normally distributed, one of the cells is beyond that on average, but for what `choppiness` adds.
+        """
+        rows, columns = self.shape
+        return float(((self.slope_variance[0] + self.slope_variance[2]) * np.log(rows * columns)) ** 0.5)
+
+    @property
     def significant_height_m(self) -> float:
         """Four standard deviations of the heights, metres: what a sailor calls the height of the waves."""
         return 4.0 * float(self.variance_m2) ** 0.5

@@ -75,6 +75,11 @@ class WaveSource(ABC):
         """Lowest and highest height that is ever given, metres."""
 
     @property
+    def steepest(self) -> float | None:
+        """Steepest slope that is to be expected at any time, None where that is not known beforehand."""
+        return None
+
+    @property
     def short_slopes(self) -> tuple[float, float, float]:
         """Mean squares (dh/dx)^2, dh/dx dh/dz, (dh/dz)^2 of the waves that are too short for the grid."""
         return 0.0, 0.0, 0.0

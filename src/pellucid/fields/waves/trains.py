@@ -78,6 +78,11 @@ class Sine(WaveSource):
         reach = float(self.amplitudes_m.sum()) * (1.0 + 1e-6)
         return self.level_m - reach, self.level_m + reach
 
+    @property
+    def steepest(self) -> float:
+        """Steepest slope, where all trains are steepest in one place."""
+        return float((self.amplitudes_m * np.hypot(*self.k.T)).sum())
+
     def _together(self) -> dict[str, Array]:
         """All parameters of the trains at the same length."""
         count = max(len(values) for values in self.trains.values())
@@ -165,6 +170,12 @@ class Gerstner(Sine):
     ) -> None:
         self._sharpness = arguments.numbers("sharpness", sharpness, low=0.0, high=1.0)
         super().__init__(wavelength_m, amplitude_m, direction_deg, phase_deg, **others)
+
+    @property
+    def steepest(self) -> float:
+        """Steepest slope, as of one train of the same steepness: that of a trochoid; a cusp's is infinite."""
+        rest = 1.0 - self.steepness**2
+        return super().steepest / rest**0.5 if rest > 0.0 else float("inf")
 
     def _together(self) -> dict[str, Array]:
         self.trains["sharpness"] = self._sharpness

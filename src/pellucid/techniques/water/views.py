@@ -175,11 +175,18 @@ def basin_of(item: Water, quality: WaterQuality, slope: float, reach: tuple[floa
     sight = -np.log(VISIBILITY) / clear if clear > 0.0 else np.inf
     low, high = item.bounds_m
     bottom = max(min(reach[0], item.level), item.level - float(sight))
-    return Basin(item.level, low, high, _in_steps(slope), item.matter.n_d, item.ambient_n, bottom, reach[1])
+    steepest = _steepest(item, slope)
+    return Basin(item.level, low, high, steepest, item.matter.n_d, item.ambient_n, bottom, reach[1])
+
+
+def _steepest(item: Water, now: float) -> float:
+    """Slope that cameras count with: where it can be, the same at all times, so that one picture serves many."""
+    expected = getattr(item.waves, "steepest", None)
+    return _in_steps(now) if expected is None else float(expected)
 
 
 def _in_steps(slope: float) -> float:
-    """The next power of 2^(1/4): waves of one kind have one camera, and one picture serves while nothing else moves."""
+    """The next power of 2^(1/4), which changes seldom."""
     return float(2.0 ** (np.ceil(4.0 * np.log2(slope)) / 4.0)) if slope > 0.0 else 0.0
 
 
