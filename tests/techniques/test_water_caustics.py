@@ -160,6 +160,53 @@ def test_the_map_is_what_a_count_of_photons_finds(renderer: Renderer) -> None:
     assert mapped.sum() == pytest.approx(counted.sum(), rel=5e-3)
 
 
+def disc_of_directions(middle: np.ndarray, radius_deg: float, rng: np.random.Generator, count: int) -> np.ndarray:
+    """(N, 3) unit, evenly over a disc that faces the water."""
+    aside = np.cross(middle, (0.0, 0.0, 1.0))
+    aside /= np.linalg.norm(aside)
+    r = np.tan(np.radians(radius_deg)) * np.sqrt(rng.random((count, 1)))
+    turn = rng.uniform(0.0, 2.0 * np.pi, (count, 1))
+    there = middle + r * (np.cos(turn) * aside + np.sin(turn) * np.cross(middle, aside))
+    return np.asarray(there / np.linalg.norm(there, axis=1, keepdims=True))
+
+
+@pytest.mark.parametrize(("radius_deg", "parts"), [(1.5, 1), (12.0, 10)])
+def test_a_wide_lamp_blurs_its_map_as_a_count_of_photons_from_its_disc_does(
+    radius_deg: float, parts: int, renderer: Renderer
+) -> None:
+    from pellucid.techniques.water.photons import wave_at
+
+    depth, bins, count, rng = 1.2, 32, 1_000_000, np.random.default_rng(7)
+    wide = pl.DirectionalLight(direction=SUN, angular_radius_deg=radius_deg)
+    found = lit(renderer, scene(waves=sines(0.06), depth=depth, lights=[wide]))
+    assert len(found.light._lamps[0, 0].parts) == parts
+    middle = -np.array(SUN) / np.linalg.norm(SUN)
+    to_lamp = disc_of_directions(middle, radius_deg, rng, count)
+    xz = rng.uniform(-2.0, 2.0, (count, 2))
+    wave = wave_at(found.body.waves, np.zeros(2), xz)
+    n = np.stack([-wave[:, 1], np.ones(count), -wave[:, 2]], axis=1)
+    n /= np.linalg.norm(n, axis=1, keepdims=True)
+    facing = (n * to_lamp).sum(axis=1)
+    flux = facing / (n[:, 1] * middle[1]) * (1.0 - fresnel_dielectric(facing, 1.0, N)) / (to_lamp @ middle).mean()
+    way = refract(-to_lamp, n, 1.0, N).direction
+    landed = xz + way[:, [0, 2]] * ((-depth - wave[:, 0]) / way[:, 1])[:, None]
+    seen = landed + np.array(found.tracer.p["slope"]) * depth
+    counted, _, _ = np.histogram2d(seen[:, 1], seen[:, 0], bins, [[-2, 2]] * 2, weights=flux)
+    counted *= bins**2 / count
+    mapped = found.maps[0][..., 1].reshape(bins, 128 // bins, bins, 128 // bins).mean(axis=(1, 3))
+    inner = slice(2, -2)
+    error = ((mapped - counted) / np.maximum(counted, 0.3))[inner, inner]
+    assert np.sqrt((error**2).mean()) < 1.15 * np.sqrt(bins**2 / count)  # their noise
+    assert mapped[inner, inner].std() == pytest.approx(counted[inner, inner].std(), rel=0.03)
+
+
+def test_cpu_and_device_divide_a_wide_lamp_alike(renderer: Renderer) -> None:
+    wide = pl.DirectionalLight(direction=SUN, angular_radius_deg=10.0)
+    found = lit(renderer, scene(waves=sines(0.06), lights=[wide]))
+    cpu, gpu = found.tracer.light_map().astype(np.float64)[..., 1], found.maps[0][..., 1]
+    assert np.abs(cpu - gpu).mean() < 2e-3 * gpu.mean()
+
+
 def test_shadows_fall_where_refracted_light_puts_them(renderer: Renderer) -> None:
     sun = -np.array(SUN) / np.linalg.norm(SUN)
     inner = refract(-sun, np.array([0.0, 1.0, 0.0]), 1.0, N).direction

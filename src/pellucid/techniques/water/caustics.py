@@ -18,6 +18,7 @@ from pellucid.gpu.kernel import ComputeKernel, RenderPass
 from pellucid.scene import DirectionalLight
 from pellucid.surroundings.layouts import MAX_WATER_LIGHTS
 from pellucid.surroundings.submersion import DEPTH_FORMAT, WaterRegion, refracted_slope
+from pellucid.techniques.water.lamp_parts import lamp_in_parts, lifted, towards
 from pellucid.techniques.water.layouts import CausticBeam, CausticParams
 from pellucid.techniques.water.photons import Tracer
 
@@ -32,7 +33,6 @@ DEPTH_SIZE = 1024  # texels a side of what the camera along a light sees
 SLICES = 8  # of the water, for beams in it; photons to one texel of them along a side:
 SLICE_CELLS = 2
 OPEN_M = 10.0  # depth of water that nothing lies in, for what waves focus there
-LOWEST_SUN = 1e-3  # sine of the least elevation
 
 
 @dataclass
@@ -41,13 +41,16 @@ class Lamp:
 
     Attributes
     ----------
-    params : () record of `layouts.CausticParams`. buffer : the same on the device.
+    params : () record of `layouts.CausticParams`, of its middle. buffer : the same on the device.
     depth_buffers : the same for the two passes of depth.
+    parts : such records of the parts that send photons, together the lamp. part_buffers : the same on the device.
     """
 
     params: np.ndarray
     buffer: Any
     depth_buffers: list[Any] = field(default_factory=list)
+    parts: list[np.ndarray] = field(default_factory=list)
+    part_buffers: list[Any] = field(default_factory=list)
 
 
 class WaterLight:
@@ -103,7 +106,7 @@ class WaterLight:
             channels = max(channels, 2)  # room for the sums of slices
         anew = self._allocate(side, max(len(lamps), 1) * len(bodies), channels) or anew
         records = [
-            (body, self._lamp((k, j), caustic_params(body, region, lamp, surroundings.submersion.layer(k, j))))
+            (body, self._lamp((k, j), *caustic_params(body, region, lamp, surroundings.submersion.layer(k, j))))
             for k, (body, region) in enumerate(zip(bodies, regions, strict=True))
             for j, lamp in enumerate(lamps or [None])
         ]
@@ -138,7 +141,7 @@ class WaterLight:
         layer, around = int(lamp.params["layer"]), surroundings.submersion
         below, above = (self.device.read_texture(t, layer)[..., 0] for t in (around.depth_map, self._above))
         iteration = body.quality.caustic_intersection == "iteration"
-        return Tracer(lamp.params, body.params, body.waves, below, above, around.light_map.width, iteration)
+        return Tracer(lamp.parts, body.params, body.waves, below, above, around.light_map.width, iteration)
 
     def _draw_depth(self, encoder: Any, body: Any, lamp: Lamp, surroundings: Surroundings) -> None:
         key = "caustic_depth"
@@ -175,14 +178,17 @@ class WaterLight:
         encoder.clear_buffer(self._sums)
         if not dark:
             # Beams in the water are made of the device's photons, whoever sums those of the map.
-            self._kernel("caustic_refract", iteration).run(groups, bound, encoder)
-            self._kernel("caustic_splat").run(groups, bound, encoder)
+            for part in lamp.part_buffers:
+                self._kernel("caustic_refract", iteration).run(groups, {**bound, "caustic": part}, encoder)
+                self._kernel("caustic_splat").run(groups, {**bound, "caustic": part}, encoder)
         self._kernel("caustic_resolve").run((*groups[:2], 1), bound, encoder)
         if body.quality.god_rays and lamp.params["layer"] == around.layer(int(body.params["region"]), 0):
             slices = self._slices_of(int(body.params["region"]), side // SLICE_CELLS)
             bound["caustic_slice_out"] = slices
-            groups = (-(-slices.size[0] // ROW), slices.size[1], SLICES)
+            if len(lamp.parts) > 1:
+                self._kernel("caustic_refract", iteration).run(groups, bound, encoder)
             encoder.clear_buffer(self._sums)
+            groups = (-(-slices.size[0] // ROW), slices.size[1], SLICES)
             self._kernel("caustic_slice").run(groups, bound, encoder)
             self._kernel("caustic_slice_resolve").run(groups, bound, encoder)
 
@@ -208,7 +214,7 @@ class WaterLight:
         kernel: ComputeKernel = self._kernels[key]
         return kernel
 
-    def _lamp(self, key: tuple[int, int], params: np.ndarray) -> Lamp:
+    def _lamp(self, key: tuple[int, int], params: np.ndarray, parts: list[np.ndarray]) -> Lamp:
         if key not in self._lamps:
             buffers = [self.device.buffer(CausticParams.itemsize, "uniform", "caustic") for _ in range(3)]
             self._lamps[key] = Lamp(np.zeros((), CausticParams), buffers[0], buffers[1:])
@@ -220,6 +226,13 @@ class WaterLight:
                 record = params.copy()
                 record["above"] = above
                 self.device.write(buffer, record.reshape(1))
+        if [part.tobytes() for part in lamp.parts] != [part.tobytes() for part in parts]:
+            while len(lamp.part_buffers) < len(parts):
+                lamp.part_buffers.append(self.device.buffer(CausticParams.itemsize, "uniform", "part of a lamp"))
+            del lamp.part_buffers[len(parts) :]
+            for buffer, part in zip(lamp.part_buffers, parts, strict=True):
+                self.device.write(buffer, part.reshape(1))
+            lamp.parts = parts
         return lamp
 
     def _allocate(self, side: int, layers: int, channels: int) -> bool:
@@ -240,12 +253,6 @@ def far_lamps(lights: Sequence[Any]) -> list[DirectionalLight]:
     """Those whose light comes from above and far away, as many as have maps; in the order of `Light.water_layer`."""
     high = [lamp for lamp in lights if isinstance(lamp, DirectionalLight) and towards(lamp)[1] > 0.0]
     return high[:MAX_WATER_LIGHTS]
-
-
-def towards(lamp: DirectionalLight) -> np.ndarray:
-    """(3,) unit, to the lamp."""
-    way = -np.asarray(lamp.direction, np.float64)
-    return np.asarray(way / np.linalg.norm(way))
 
 
 def channel_count(body: Any) -> int:
@@ -289,13 +296,18 @@ def region_of(
 
 def camera_slope(lamp: DirectionalLight, n: float, quality: WaterQuality) -> tuple[float, float]:
     """Horizontal way over depth, (x, z), of the camera of a map: along the refracted light, or the incident."""
-    return refracted_slope(_lifted(towards(lamp)), n if quality.caustic_camera == "refracted" else 1.0)
+    return refracted_slope(lifted(towards(lamp)), n if quality.caustic_camera == "refracted" else 1.0)
 
 
-def caustic_params(body: Any, region: WaterRegion, lamp: DirectionalLight | None, layer: int) -> np.ndarray:
-    """() record of `layouts.CausticParams`; without a lamp only heights are asked of it."""
+def caustic_params(
+    body: Any, region: WaterRegion, lamp: DirectionalLight | None, layer: int
+) -> tuple[np.ndarray, list[np.ndarray]]:
+    """() record of `layouts.CausticParams` for the middle of a lamp, and those of its parts.
+
+    Without a lamp only heights are asked of it.
+    """
     p = np.zeros((), CausticParams)
-    to_light = _lifted(towards(lamp)) if lamp is not None else np.array([0.0, 1.0, 0.0])
+    to_light = lifted(towards(lamp)) if lamp is not None else np.array([0.0, 1.0, 0.0])
     p["to_light"], p["layer"], p["index"], p["reach_m"] = to_light, layer, region.n, region.reach_m
     p["slope"] = camera_slope(lamp, region.n[1], body.quality) if lamp is not None else 0.0
     p["slope_above"] = to_light[[0, 2]] / to_light[1]
@@ -303,15 +315,12 @@ def caustic_params(body: Any, region: WaterRegion, lamp: DirectionalLight | None
     p["loss"], p["channels"], p["steps"] = 1.0, channel_count(body), body.quality.steps
     # Higher things still hide the lamp: depths there are cut off, not left out.
     p["reach_above_m"] = 1e4
-    if lamp is not None:
-        p["sun_slope"] = np.tan(np.radians(lamp.angular_radius_deg)) / region.n[1]
-        p["shadows"] = body.quality.shadows and lamp.cast_shadow
-    return p
-
-
-def _lifted(to_light: np.ndarray) -> np.ndarray:
-    """A direction to a lamp that is at least a little over the horizon."""
-    return np.asarray([to_light[0], max(to_light[1], LOWEST_SUN), to_light[2]])
+    p["share"] = 1.0
+    if lamp is None:
+        return p, [p]
+    p["shadows"] = body.quality.shadows and lamp.cast_shadow
+    texel_m = (np.asarray(region.high_m) - region.low_m) / body.quality.caustic_size
+    return p, lamp_in_parts(p, lamp, texel_m)
 
 
 def _choices(quality: WaterQuality) -> tuple[Any, ...]:

@@ -58,7 +58,8 @@ CausticParams = struct(
         ("reach_m", "f32"),  # of the depth maps, below the highest and above the lowest wave
         ("slope", "vec2f"),  # of the camera below the surface, horizontal way over depth
         ("slope_above", "vec2f"),  # along the light above it
-        ("sun_slope", "f32"),  # tangent of the radius of the lamp as it is seen, in the water
+        ("lamp_side", "vec2f"),  # of its picture in the water, by axis, over the depth
+        ("share", "f32"),  # of the lamp that shines from there
         ("focus", "f32"),  # 1; 0 to leave out what waves do to the density
         ("loss", "f32"),  # 1; 0 to leave out what the surface reflects
         ("shadows", "f32"),  # 1; 0 for a lamp without any

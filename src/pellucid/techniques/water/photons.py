@@ -6,6 +6,7 @@ here: refraction, the way to the mesh, and the sums.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +17,7 @@ from pellucid.techniques.water.prepare import WaveMaps
 STEP_TEXELS = 2.0  # of caustic_march.wgsl, and the next two
 MOST_STEPS = 24
 REFINEMENTS = 6
-WIDEST, SHARPEST, TORN = 6.0, 0.004, 12.0  # texels, of caustic_spread.wgsl and caustic_splat.wgsl
+WIDEST, LAMP, SHARPEST, TORN = 6.0, 4.0, 0.004, 12.0  # texels, of caustic_spread.wgsl and caustic_splat.wgsl
 
 
 @dataclass(frozen=True)
@@ -59,14 +60,14 @@ class Tracer:
 
     Parameters
     ----------
-    caustic, water : () records of `layouts.CausticParams` and `layouts.WaterParams`.
+    parts : () records of `layouts.CausticParams`, one for each part of the lamp. water : one of `layouts.WaterParams`.
     waves : the surface. below, above : (D, D) depths that the camera along the light sees, 0 to 1, rows along z.
     side : cells and texels along a side. iteration : whether meshes are found by [mihalik2008, 7.1].
     """
 
     def __init__(
         self,
-        caustic: np.ndarray,
+        parts: Sequence[np.ndarray],
         water: np.ndarray,
         waves: WaveMaps,
         below: np.ndarray,
@@ -75,24 +76,26 @@ class Tracer:
         iteration: bool = False,
     ) -> None:
         self.waves, self.below, self.above, self.side, self.iteration = waves, below, above, side, iteration
-        self.p = {name: caustic[name].astype(np.float64) for name in caustic.dtype.names or ()}
+        self.parts = parts
+        self.p = {name: parts[0][name].astype(np.float64) for name in parts[0].dtype.names or ()}
         self.low, self.high = water["low"].astype(np.float64), water["high"].astype(np.float64)
         self.center, self.level = water["center"].astype(np.float64), float(water["level"])
         self.top, self.trough = self.level + float(water["wave_high"]), self.level + float(water["wave_low"])
         self.texel_m = float((self.high - self.low)[0]) / side
 
-    def photons(self, channel: int = 0) -> Photons:
-        """Those of one colour."""
+    def photons(self, channel: int = 0, part: int = 0) -> Photons:
+        """Those of one colour, from one part of the lamp."""
         cells = (np.stack(np.meshgrid(*(np.arange(self.side),) * 2), axis=-1) + 0.5) / self.side
         xz = self.low + cells * (self.high - self.low)
         wave = float(self.p["focus"]) * wave_at(self.waves, self.center, xz)
         n = np.stack([-wave[..., 1], np.ones_like(wave[..., 0]), -wave[..., 2]], axis=-1)
         n /= np.linalg.norm(n, axis=-1, keepdims=True)
         origin = np.stack([xz[..., 0], self.level + wave[..., 0], xz[..., 1]], axis=-1)
-        light, index = self.p["to_light"], float(self.p["index"][channel])
+        light, index = self.parts[part]["to_light"].astype(np.float64), float(self.p["index"][channel])
         facing = n @ light
         lost = float(self.p["loss"]) * fresnel_dielectric(np.maximum(facing, 0.0), 1.0, index)
-        flux = np.maximum(facing, 0.0) / (n[..., 1] * light[1]) * (1.0 - lost) * self._lit(origin)
+        density = float(self.parts[part]["share"]) * np.maximum(facing, 0.0) / (n[..., 1] * light[1])
+        flux = density * (1.0 - lost) * self._lit(origin)
         way = np.broadcast_to(-light, n.shape)
         inside = refract(np.where((facing > 0.0)[..., None], way, -n), n, 1.0, index).direction
         depth = self._iterate(origin, inside) if self.iteration else self._march(origin, inside)
@@ -108,7 +111,10 @@ class Tracer:
     def light_map(self) -> np.ndarray:
         """(N, N, 4) float32: what comes to each texel, by channel, and the height of the surface."""
         channels = int(self.p["channels"])
-        sums = [splat(self.photons(c), float(self.p["sun_slope"]), self._texel_sides()) for c in range(channels)]
+        sums = [
+            sum(splat(self.photons(c, k), part["lamp_side"], self._texel_sides()) for k, part in enumerate(self.parts))
+            for c in range(channels)
+        ]
         colours = sums if channels == 3 else sums[:1] * 3
         return np.stack([*colours, self.height_map()], axis=-1).astype(np.float32)
 
@@ -190,11 +196,11 @@ class Tracer:
         return np.stack([xz[..., 0], y, xz[..., 1]], axis=-1)
 
 
-def splat(photons: Photons, sun_slope: float, texel_m: np.ndarray) -> np.ndarray:
+def splat(photons: Photons, lamp_side: np.ndarray, texel_m: np.ndarray) -> np.ndarray:
     """(N, N) sums of flux, each photon spread between its neighbours' landings; see caustic_spread.wgsl."""
     landed, side = photons.landed, len(photons.landed)
     along, across = _beside(landed, 1), _beside(landed, 0)
-    lamp = 2.0 * sun_slope * photons.depth_m[..., None] / texel_m
+    lamp = lamp_side * photons.depth_m[..., None] / texel_m
     over = [
         _spread(along[0][..., 0], along[1][..., 0], across[1][..., 0], lamp[..., 0]),
         _spread(across[0][..., 1], across[1][..., 1], along[1][..., 1], lamp[..., 1]),
@@ -235,7 +241,7 @@ def _beside(landed: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
 
 def _spread(middle: np.ndarray, one: np.ndarray, other: np.ndarray, lamp: np.ndarray) -> Trapezoid:
     a, b = np.minimum(np.abs(one), WIDEST), np.minimum(np.abs(other), WIDEST)
-    smaller = np.minimum(np.minimum(a, b) + np.minimum(lamp, WIDEST), 0.4 * WIDEST)
+    smaller = np.minimum(np.minimum(a, b) + np.minimum(lamp, WIDEST), LAMP)
     larger = np.maximum(a, b)
     wide = np.maximum(np.maximum(larger, smaller), SHARPEST)
     narrow = np.maximum(np.minimum(larger, smaller), SHARPEST)

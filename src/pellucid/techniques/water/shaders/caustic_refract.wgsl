@@ -24,7 +24,8 @@ fn caustic_beam(cell: vec2u, channel: u32) -> CausticBeam {
     let origin = vec3f(xz.x, water.level + wave.x, xz.y);
     let facing = dot(n_ws, caustic.to_light);
     let lost = caustic.loss * fresnel_dielectric(facing, 1.0, caustic.index[channel]);
-    let flux = max(facing, 0.0) / (n_ws.y * caustic.to_light.y) * (1.0 - lost) * caustic_lit(origin);
+    let density = caustic.share * max(facing, 0.0) / (n_ws.y * caustic.to_light.y);
+    let flux = density * (1.0 - lost) * caustic_lit(origin);
     let inside = refract(-caustic.to_light, n_ws, 1.0, caustic.index[channel]).direction;
     let ray = caustic_ray(origin, inside);
     var depth_m = 0.0;

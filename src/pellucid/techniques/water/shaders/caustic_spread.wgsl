@@ -4,6 +4,7 @@
 //!import techniques/water/shaders/caustic_cells
 
 const SPREAD_WIDEST = 6.0;     // texels
+const SPREAD_LAMP = 4.0;       // texels; wider lamps come in parts
 const SPREAD_SHARPEST = 0.004;  // texels, so that a trapezoid has sides
 const SPREAD_TEXELS = 10.0;
 
@@ -45,7 +46,7 @@ fn caustic_spread(middle: vec2f, one: vec2f, other: vec2f, lamp: vec2f, flux: f3
 // the lamp's picture into it: the wider one must go on to touch its neighbours.
 fn spread(middle: f32, one: f32, other: f32, lamp: f32) -> Spread {
     let sides = min(abs(vec2f(one, other)), vec2f(SPREAD_WIDEST));
-    let smaller = min(min(sides.x, sides.y) + min(lamp, SPREAD_WIDEST), 0.4 * SPREAD_WIDEST);
+    let smaller = min(min(sides.x, sides.y) + min(lamp, SPREAD_WIDEST), SPREAD_LAMP);
     let wide = max(max(max(sides.x, sides.y), smaller), SPREAD_SHARPEST);
     let narrow = max(min(max(sides.x, sides.y), smaller), SPREAD_SHARPEST);
     let reach = 0.5 * (wide + narrow);
