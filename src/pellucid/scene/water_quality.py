@@ -49,6 +49,8 @@ class WaterQuality(Choices):
     fresnel : ``"exact"``, or ``"schlick"`` with the exponent `schlick_power` > 0.
     color : attenuation by what the water holds (``"physical"``), or towards one colour [mihalik2008, eqs. 4, 5].
     underside : from below, ``"exact"`` refraction with its window, or the rays of [mihalik2008, eq. 12].
+    shading_rate : pixels along the side of the squares that share one look at the water, 1 to 4; what cuts the water
+        stays sharp. A camera within the water, or without perspective, looks for every pixel.
     caustics : light that waves focus below them, worked out on the ``"gpu"``, the ``"cpu"``, or not at all.
     caustic_size : side of the map of it, texels, 16 to 4096.
     caustic_camera : looks along the ``"refracted"`` light or the ``"incident"`` one, as [mihalik2008, 8] does.
@@ -78,6 +80,7 @@ class WaterQuality(Choices):
     schlick_power: float = 5.0
     color: str = "physical"
     underside: str = "exact"
+    shading_rate: int = 1
     caustics: str = "gpu"
     caustic_size: int = 256
     caustic_camera: str = "refracted"
@@ -130,7 +133,13 @@ _CHOICES = {
     "caustic_camera": CAUSTIC_CAMERAS,
     "caustic_intersection": CAUSTIC_INTERSECTIONS,
 }
-_WHOLE = {"steps": (1, 64), "march_steps": (1, 256), "texture_size": (16, 8192), "caustic_size": (16, 4096)}
+_WHOLE = {
+    "steps": (1, 64),
+    "march_steps": (1, 256),
+    "texture_size": (16, 8192),
+    "caustic_size": (16, 4096),
+    "shading_rate": (1, 4),
+}
 _PRESETS: dict[str, dict[str, Any]] = {
     "best": {},
     "fast": {

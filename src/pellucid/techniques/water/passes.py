@@ -25,7 +25,7 @@ from pellucid.techniques.water.caustics import WaterLight
 from pellucid.techniques.water.glow import WaterGlow
 from pellucid.techniques.water.layouts import WaterParams, WaterViews
 from pellucid.techniques.water.prepare import WaveMaps, parameters, same_surfaces, surfaces_of, wave_maps
-from pellucid.techniques.water.region import covered
+from pellucid.techniques.water.region import Rectangle, covered
 from pellucid.techniques.water.views import SurfacePictures, hidden_box, needs_pictures
 from pellucid.techniques.water.wave_moments import moment_levels
 
@@ -38,7 +38,8 @@ if TYPE_CHECKING:
 
 HIT_FORMAT = "rgba32float"
 WAVE_NAMES = ("wave_map", "wave_sampler", "wave_moments", "wave_texture", "moments_texture")
-NEAREST = ("water_hits", "opaque_color", "picture_depths")
+NONE = [(0.0, 0.0, 0.0, 0.0)]
+NEAREST = ("water_hits", "water_squares", "opaque_color", "picture_depths")
 
 
 @dataclass
@@ -155,34 +156,54 @@ class WaterTechnique:
             if name == "opaque_depth" or not outside:
                 size = (*targets.size, 1)
                 encoder.copy_texture_to_texture({"texture": drawn}, {"texture": copy}, size)
-        hits = self._target("water_hits", HIT_FORMAT, targets.size)
+        rate = body.quality.shading_rate if outside else 1
+        squares = tuple(-(-side // rate) for side in targets.size)
+        hits = self._target("water_hits", HIT_FORMAT, squares)
+        constants = {**body.constants, "WATER_RATE": float(rate)}
         bound = {**self._nothing, **body.bindings, **surroundings.bindings, **self._light.bindings(body)}
         bound |= {name: copy for name, (_, copy) in copies.items()}
         if body.pictures is not None:
             waves = body.waves.limits_m, body.waves.slope
             body.pictures.draw(encoder, body.item, body.quality, waves, surroundings, timer)
             bound |= body.pictures.bindings
-        self._pass("find", body.constants).run(
-            encoder,
-            color=[hits.create_view()],
-            depth=targets.depth_view,
-            clear=[(0.0, 0.0, 0.0, 0.0)],
-            bindings=bound,
-            scissor=region,
-            timer=timer,
-            label="water search",
-        )
-        self._pass("compose", {**body.constants, **surroundings.shading_constants}).run(
-            encoder,
-            color=[targets.color_view],
-            bindings={**bound, "water_hits": hits},
-            scissor=region,
-            timer=timer,
-            label="water shade",
-        )
+        composed = {**constants, **surroundings.shading_constants}
+        if rate == 1:
+            on_surface = {"scissor": region, "timer": timer}
+            self._pass("find", constants).run(
+                encoder,
+                [hits.create_view()],
+                targets.depth_view,
+                NONE,
+                bindings=bound,
+                label="water search",
+                **on_surface,
+            )
+            bound["water_hits"] = hits
+            self._pass("compose", composed).run(
+                encoder, [targets.color_view], bindings=bound, label="water shade", **on_surface
+            )
+        else:
+            bound["water_squares"] = self._target("water_squares", COLOR_FORMAT, squares)
+            on_squares = {"scissor": _divided(region, rate), "timer": timer, "clear": NONE}
+            self._pass("find_sparse", constants).run(
+                encoder, [hits.create_view()], bindings=bound, label="water search", **on_squares
+            )
+            bound["water_hits"] = hits
+            self._pass("compose", composed).run(
+                encoder, [bound["water_squares"].create_view()], bindings=bound, label="water shade", **on_squares
+            )
+            self._pass("widen", constants).run(
+                encoder,
+                [targets.color_view],
+                targets.depth_view,
+                bindings=bound,
+                scissor=region,
+                timer=timer,
+                label="water widen",
+            )
         if body.quality.glow > 0.0:
             self._glow = self._glow or WaterGlow(self.device)
-            self._glow.draw(encoder, targets, {**bound, "water_hits": hits}, body.quality.glow, timer)
+            self._glow.draw(encoder, targets, bound, body.quality.glow, timer)
 
     def _body(self, item: Water, before: list[Body], number: int) -> Body:
         quality = quality_of(item.technique, item.quality)
@@ -233,8 +254,10 @@ class WaterTechnique:
         key = (name, *used.items())
         if key not in self._passes:
             options: dict[str, Any] = {"targets": (COLOR_FORMAT,)}
-            if name == "find":
-                options = {"targets": (HIT_FORMAT,), "depth": DEPTH_FORMAT, "depth_compare": "greater-equal"}
+            if name in ("find", "find_sparse"):
+                options["targets"] = (HIT_FORMAT,)
+            if name in ("find", "widen"):
+                options |= {"depth": DEPTH_FORMAT, "depth_compare": "greater-equal"}
             self._passes[key] = RenderPass(self.device, module, constants=used, nearest=NEAREST, **options)
         return self._passes[key]
 
@@ -249,6 +272,13 @@ class WaterTechnique:
 def _breadth(box: Box) -> float:
     low, high = box
     return (high[0] - low[0]) * (high[2] - low[2])
+
+
+def _divided(region: Rectangle, rate: int) -> Rectangle:
+    """The squares of pixels that a part of the picture touches."""
+    left, top, width, height = region
+    first = left // rate, top // rate
+    return (*first, -(-(left + width) // rate) - first[0], -(-(top + height) // rate) - first[1])
 
 
 def _distance(item: Water, camera: Camera) -> float:

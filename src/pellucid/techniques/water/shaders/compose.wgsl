@@ -7,10 +7,11 @@
 // jumps where it dives, nor does an even sky look brighter from below.
 @fragment
 fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let hit = water_hit(textureLoad(water_hits, vec2i(position.xy), 0));
-    let ray = camera_ray(position.xy);
+    let record = textureLoad(water_hits, vec2i(position.xy), 0);
+    let hit = water_hit(record);
+    let ray = camera_ray(water_pixel(position.xy, water_hit_pick(record)));
     let p_ws = ray.origin + hit.t * ray.direction;
-    var radiance = textureLoad(opaque_color, vec2i(position.xy), 0).rgb;
+    var radiance = textureLoad(opaque_color, vec2i(position.xy), 0).rgb;  // none where pixels share a ray
     let denser = water_dilution(water.n_water.g, water.n_outside);
     let within = hit.kind == WATER_BELOW || hit.kind >= WATER_FOG;
     let meets = hit.kind != WATER_NONE && hit.kind < WATER_FOG;
@@ -28,5 +29,6 @@ fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     if hit.kind == WATER_NONE {
         discard;
     }
-    return vec4f(radiance, 1.0);
+    // Where pixels share a ray they look for how deep it went, which is linear in the picture on planes.
+    return vec4f(radiance, select(1.0, depth_of(p_ws), WATER_RATE > 1u));
 }

@@ -13,7 +13,7 @@ const GLOW_COLOR = vec3f(1.0, 1.0, 0.8);
 @fragment
 fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let at = clamp(position.xy * glow_scale(), vec2f(0.0), frame.size - 1.0);
-    let hit = water_hit(textureLoad(water_hits, vec2i(at), 0));
+    let hit = water_hit(textureLoad(water_hits, vec2i(at * vec2f(textureDimensions(water_hits)) / frame.size), 0));
     let ray = camera_ray(floor(at) + 0.5);
     let p_ws = ray.origin + hit.t * ray.direction;
     let n_ws = wave_normal(wave_point(p_ws.xz, glow_scale() * footprint_m(p_ws)).slope);

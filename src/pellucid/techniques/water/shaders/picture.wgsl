@@ -4,6 +4,7 @@
 const PICTURE_UNKNOWN = 0u;    // the picture does not show where the ray goes
 const PICTURE_SOMETHING = 1u;
 const PICTURE_NOTHING = 2u;    // no mesh on the way
+const PICTURE_HIDDEN = 3u;     // it ends behind what the picture shows there
 
 struct PicturePlace {
     uv: vec2f,

@@ -18,7 +18,7 @@ fn seen_along(p_ws: vec3f, direction_ws: vec3f, below: bool) -> Seen {
     }
     let place = seen_place(p_ws, direction_ws, below);
     let sends_rays = select(WATER_REFLECTION, WATER_REFRACTION, below) == SEEN_BY_RAYS
-        || (WATER_FALLBACK == 0u && place.found == PICTURE_UNKNOWN);
+        || (WATER_FALLBACK == 0u && (place.found == PICTURE_UNKNOWN || place.found == PICTURE_HIDDEN));
     var seen = Seen(vec3f(0.0), 0.0, false);
     if WATER_FALLBACK == 0u || WATER_REFRACTION == SEEN_BY_RAYS || WATER_REFLECTION == SEEN_BY_RAYS {
         if sends_rays {
@@ -58,7 +58,8 @@ fn seen_place(p_ws: vec3f, direction_ws: vec3f, below: bool) -> PicturePlace {
 
 fn seen_in_picture(place: PicturePlace, p_ws: vec3f, direction_ws: vec3f, below: bool) -> Seen {
     let layer = select(1u, 0u, below);
-    // Above, what no picture shows is the sky; below, what the border of the picture shows.
+    // Above, what no picture shows is the sky; below, what the border of the picture shows. What is hidden looks like
+    // what hides it.
     let open = place.found == PICTURE_NOTHING || (place.found == PICTURE_UNKNOWN && !below);
     let shown = textureSampleLevel(picture_colors, view_sampler, place.uv, layer, 0.0).rgb;
     let inside = water_way(p_ws, direction_ws);

@@ -73,7 +73,8 @@ fn seen_march(layer: u32, p_ws: vec3f, direction_ws: vec3f) -> PicturePlace {
     }
     // Metres are not linear in the picture, their reciprocals are.
     let t = t_end * s * begin.w / mix(end.w, begin.w, s);
-    let nothing = select(PICTURE_UNKNOWN, PICTURE_NOTHING, first < 0.0 && !passed && reach <= border);
+    let open = select(PICTURE_UNKNOWN, PICTURE_NOTHING, first < 0.0 && !passed && reach <= border);
+    let nothing = select(open, PICTURE_HIDDEN, first >= 0.0 && passed);
     return PicturePlace(mix(from_at, to_at, s).xy, t, select(nothing, PICTURE_SOMETHING, found));
 }
 

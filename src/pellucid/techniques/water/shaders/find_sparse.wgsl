@@ -1,0 +1,46 @@
+// First pass where pixels share a ray: what each square of them shows of the water.
+//!import surroundings/shaders/full_picture
+//!import techniques/water/shaders/first
+
+// The ray through the middle, as far as what is drawn in the whole square; where something of it is nearer than the
+// water, the ray of the pixel that shows most: so every point found is seen by some pixel.
+@fragment
+fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let drawn = square_depths(vec2i(position.xy));
+    var hit = WaterHit(WATER_NONE, 0.0, vec3f(0.0, 1.0, 0.0));
+    var pick = 0u;
+    for (var attempt = 0u; attempt < 2u; attempt++) {
+        pick = select(0u, drawn.last, attempt == 1u);
+        let ray = camera_ray(water_pixel(position.xy, pick));
+        let depth = select(drawn.nearest, drawn.farthest, attempt == 1u);
+        let t_max = view_depth_m(depth) / dot(ray.direction, frame.camera_forward);
+        hit = water_first(ray.origin, ray.direction, t_max);
+        if hit.kind != WATER_NONE || drawn.nearest == drawn.farthest {
+            break;
+        }
+    }
+    if hit.kind == WATER_NONE {
+        discard;
+    }
+    return water_record(hit, pick);
+}
+
+// Reversed depths of what is drawn in a square
+struct SquareDepths {
+    nearest: f32,
+    farthest: f32,
+    last: u32,  // which pixel shows the farthest, from 1
+}
+
+fn square_depths(square: vec2i) -> SquareDepths {
+    let last = vec2i(textureDimensions(opaque_depth)) - 1;
+    var depths = SquareDepths(0.0, 2.0, 0u);
+    for (var k = 0u; k < WATER_RATE * WATER_RATE; k++) {
+        let at = i32(WATER_RATE) * square + vec2i(vec2u(k % WATER_RATE, k / WATER_RATE));
+        let depth = textureLoad(opaque_depth, min(at, last), 0);
+        depths.last = select(depths.last, k + 1u, depth < depths.farthest);
+        depths.farthest = min(depths.farthest, depth);
+        depths.nearest = max(depths.nearest, depth);
+    }
+    return depths;
+}
