@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from pellucid.surroundings.camera import View
     from pellucid.techniques.water.views import SurfacePictures
 
-UNKNOWN, SOMETHING, NOTHING = 0, 1, 2
+UNKNOWN, SOMETHING, NOTHING, HIDDEN = 0, 1, 2, 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +23,7 @@ class PicturePlaces:
     """Where rays end in a picture.
 
     uv : (N, 2) place, 0 to 1 from the upper left. t : (N,) way that is reported, metres.
-    found : (N,) UNKNOWN, SOMETHING or NOTHING. shown_ws : (N, 3) point of the scene that the picture shows there.
+    found : (N,) UNKNOWN, SOMETHING, NOTHING or HIDDEN, as shaders/picture.wgsl has them. shown_ws : (N, 3) point of the scene that the picture shows there.
     """
 
     uv: np.ndarray
