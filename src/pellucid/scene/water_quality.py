@@ -147,6 +147,7 @@ _PRESETS: dict[str, dict[str, Any]] = {
         "reflection": "march",
         "march_steps": 8,
         "fallback": "environment",
+        "shading_rate": 2,
         "caustic_size": 256,
     },
     "mihalik": {

@@ -157,7 +157,7 @@ class WaterTechnique:
                 size = (*targets.size, 1)
                 encoder.copy_texture_to_texture({"texture": drawn}, {"texture": copy}, size)
         rate = body.quality.shading_rate if outside else 1
-        squares = tuple(-(-side // rate) for side in targets.size)
+        squares = -(-targets.size[0] // rate), -(-targets.size[1] // rate)
         hits = self._target("water_hits", HIT_FORMAT, squares)
         constants = {**body.constants, "WATER_RATE": float(rate)}
         bound = {**self._nothing, **body.bindings, **surroundings.bindings, **self._light.bindings(body)}

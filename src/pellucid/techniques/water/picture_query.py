@@ -23,7 +23,8 @@ class PicturePlaces:
     """Where rays end in a picture.
 
     uv : (N, 2) place, 0 to 1 from the upper left. t : (N,) way that is reported, metres.
-    found : (N,) UNKNOWN, SOMETHING, NOTHING or HIDDEN, as shaders/picture.wgsl has them. shown_ws : (N, 3) point of the scene that the picture shows there.
+    found : (N,) UNKNOWN, SOMETHING, NOTHING or HIDDEN (shaders/picture.wgsl).
+    shown_ws : (N, 3) point of the scene that the picture shows there.
     """
 
     uv: np.ndarray
