@@ -355,6 +355,7 @@ class WaterQualityFile(Model):
     schlick_power: Number = UNSET
     color: StrictStr = UNSET
     underside: StrictStr = UNSET
+    shading_rate: StrictInt = UNSET
     caustics: StrictStr = UNSET
     caustic_size: StrictInt = UNSET
     caustic_camera: StrictStr = UNSET
