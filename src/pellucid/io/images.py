@@ -41,10 +41,22 @@ def read_image(path: str | PathLike[str], *, linear: bool | None = None) -> np.n
     file = existing_file(path)
     suffix_of(file, READABLE, "read as a picture")
     pixels, encoded = _decode(file)
-    if encoded if linear is None else not linear:
-        colour = pixels.shape[2] - (1 if pixels.shape[2] in (2, 4) else 0)
-        pixels[..., :colour] = srgb_to_linear(pixels[..., :colour])
-    return pixels
+    return _linearised(pixels) if (encoded if linear is None else not linear) else pixels
+
+
+def decoded(pixels: np.ndarray, *, linear: bool = False) -> np.ndarray:
+    """The numbers that an array stands for, as if `read_image` had read it from a file of its kind.
+
+    Parameters
+    ----------
+    pixels : (H, W) or (H, W, C). uint8 and uint16 are stored pictures: scaled to 0..1, and linearised from sRGB but for
+        alpha. All other arrays are numbers already, and come back themselves.
+    linear : stored numbers are already linear (heights, normals).
+    """
+    if pixels.dtype not in (np.uint8, np.uint16):
+        return pixels
+    scaled = pixels.astype(np.float32) / np.float32(np.iinfo(pixels.dtype).max)
+    return scaled if linear else _linearised(scaled)
 
 
 def write_image(path: str | PathLike[str], array: np.ndarray, *, half: bool = False) -> None:
@@ -66,6 +78,14 @@ def write_image(path: str | PathLike[str], array: np.ndarray, *, half: bool = Fa
     kind = {"u1": "uint8", "u2": "uint16"}.get(pixels.dtype.str[1:], "half" if half else "float")
     with replacing(file) as part:
         _encode(file, part, pixels, kind)
+
+
+def _linearised(pixels: np.ndarray) -> np.ndarray:
+    """The same array with its colours, not its alpha, taken from sRGB to linear light."""
+    alpha = pixels.ndim == 3 and pixels.shape[2] in (2, 4)
+    colours = pixels[..., :-1] if alpha else pixels
+    colours[...] = srgb_to_linear(colours)
+    return pixels
 
 
 def srgb_to_linear(encoded: np.ndarray) -> np.ndarray:

@@ -16,7 +16,7 @@ import numpy as np
 
 from pellucid.errors import AssetError
 from pellucid.io.files import existing_file, suffix_of
-from pellucid.io.images import srgb_to_linear
+from pellucid.io.images import decoded
 
 READABLE = (".obj", ".ply", ".stl", ".glb", ".gltf")
 MAX_FACES = 20_000_000
@@ -317,9 +317,7 @@ def _material(part: Any) -> tuple[np.ndarray | None, Any]:
 
 def _linear_map(image: Any) -> np.ndarray:
     mode = "RGBA" if "A" in image.getbands() else "RGB"
-    pixels = np.asarray(image.convert(mode), np.float32) / np.float32(255.0)
-    pixels[..., :3] = srgb_to_linear(pixels[..., :3])
-    return pixels
+    return decoded(np.asarray(image.convert(mode), np.uint8))
 
 
 def _judge(file: Path, mesh: MeshData) -> None:

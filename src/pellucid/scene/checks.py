@@ -110,6 +110,19 @@ def array(
     return frozen(np.array(given, dtype, order="C"))
 
 
+def picture(field: str, value: Any, shape: tuple[int | None, ...], *, linear: bool = False) -> np.ndarray:
+    """As `array`; uint8 and uint16 are a picture file's: scaled to 0..1, linearised from sRGB unless `linear`."""
+    from pellucid.io.images import decoded
+
+    result, given = array(field, value, shape), np.asarray(value)
+    return frozen(decoded(given, linear=linear)) if is_stored(given) else result
+
+
+def is_stored(value: Any) -> bool:
+    """Whether an array holds the bytes of a picture, and not numbers: uint8 and uint16."""
+    return np.asarray(value).dtype in (np.uint8, np.uint16)
+
+
 def frozen(result: np.ndarray) -> np.ndarray:
     """The same array, closed for writing: scene objects are values."""
     result.setflags(write=False)

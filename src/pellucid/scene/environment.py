@@ -22,7 +22,7 @@ class Environment(Value):
 
     Parameters
     ----------
-    pixels : (H, W, 3) float32 linear Rec.709 radiance, >= 0, about twice as wide as high.
+    pixels : (H, W, 3) linear Rec.709 radiance, >= 0, about twice as wide as high; sRGB when of uint8 or uint16.
     intensity : factor on the whole map, >= 0.
     rotation_deg : turns the surroundings about +Y, counter-clockwise seen from above: what was along
         -Z comes to lie along -X after 90 degrees.
@@ -41,7 +41,7 @@ class Environment(Value):
     origin: Origin | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
-        pixels = checks.array("environment.pixels", self.pixels, (None, None, 3))
+        pixels = checks.picture("environment.pixels", self.pixels, (None, None, 3))
         _check_radiance(pixels)
         store(
             self,

@@ -31,7 +31,7 @@ class Mesh(SceneObject):
     normals : (V, 3); worked out when None.
     uvs : (V, 2), (0, 0) at the lower left of the map; needed by a map.
     base_color : linear Rec.709, 0 to 1; multiplies the map.
-    base_color_map : (H, W, 3 or 4) linear, row 0 at the top.
+    base_color_map : (H, W, 3 or 4) linear, sRGB when of uint8 or uint16; row 0 at the top.
     roughness : 0 mirror-like to 1 matt.
     specular : reflectance of the coat at normal incidence, 0 to 1; 0.04 is that of n = 1.5.
     emission : radiance it sends out by itself, >= 0.
@@ -209,7 +209,7 @@ def _checked_map(value: Any) -> np.ndarray | None:
     if value is None:
         return None
     channels = 4 if np.shape(value)[-1:] == (4,) else 3
-    result = checks.array("mesh.base_color_map", value, (None, None, channels))
+    result = checks.picture("mesh.base_color_map", value, (None, None, channels))
     if result.min() < 0.0:
         raise SceneError("mesh.base_color_map", "holds negative values", "it is linear reflectance from 0 to 1")
     return result

@@ -42,7 +42,7 @@ class RefractiveSheet(SceneObject):
 
     Parameters
     ----------
-    picture : (H, W, 3) linear radiance (reflectance if `lit`), or the path of a picture.
+    picture : (H, W, 3) linear radiance (reflectance if `lit`), sRGB when of uint8 or uint16; or the path of a picture.
     depth_m : of the picture below the level of the sheet, > 0.
     size_m : of the sheet along x and z, one number or two; not with `mesh`.
     waves : heights in metres over the sheet: (H, W), as wide as it is, or anything that moves by itself
@@ -62,7 +62,7 @@ class RefractiveSheet(SceneObject):
     deviation_m : with ``"shrink"``, this deviation to all sides, so that nothing is stretched as the camera moves.
     reflection : ``"rays"`` meet the meshes of the scene and its environment; the ``"environment"`` alone; a picture
         by `sphere_map`; or ``"none"``.
-    sphere_map : (H, W, 3) or the path of a picture. sphere_rule : ``"ball"`` or ``"linear"``, see `scene.sphere_maps`.
+    sphere_map : as `picture`. sphere_rule : ``"ball"`` or ``"linear"``, see `scene.sphere_maps`.
     blend : share that is reflected, 0 to 1; None for Fresnel's law.
     lit : the picture is matt matter lit by the scene's lamps and sky through the sheet; else it is seen as it is.
     meshes : meshes of the scene between sheet and picture are seen (per fragment only).
@@ -298,7 +298,7 @@ def _checked_picture(name: str, value: Any) -> np.ndarray | None:
     if value is None:
         return None
     where = f"refractive_sheet.{name}"
-    result = checks.array(where, value, (None, None, 3))
+    result = checks.picture(where, value, (None, None, 3))
     if max(result.shape) > MOST_TEXELS:
         raise SceneError(where, f"is {result.shape[1]} x {result.shape[0]}", f"use at most {MOST_TEXELS} a side")
     if result.min() < 0.0:

@@ -33,13 +33,14 @@ class ReliefLayer(Value):
     Parameters
     ----------
     heights : (H, W) metres along the normal, row 0 at the top of the map; one number for a flat layer. With
-        `height_m`, an array or the path of a picture (8 or 16 bits, EXR) with values from 0 to 1. Or heights that move:
-        ``fields.waves.Ripples``, ``fields.drops.Drops``, any ``fields.dynamic.DynamicHeights``.
+        `height_m`, an array or the path of a picture (8 or 16 bits, EXR) with values from 0 to 1; arrays of uint8 and
+        uint16 are such pictures. Or heights that move: ``fields.waves.Ripples``, ``fields.drops.Drops``, any
+        ``fields.dynamic.DynamicHeights``.
     height_m : height of the value 1 above the value 0, metres > 0; None when `heights` are metres.
     base_m : height of the value 0 when there is `height_m`, metres; else is added.
-    normals : (H, W, 3) unit vectors, x to the right, y up, z out of the surface, or a picture in which 0 to 1 stand
-        for -1 to 1. Worked out from the heights when None.
-    colors : (H, W, 3) linear reflectance, a picture (sRGB when of 8 or 16 bits), or one linear colour.
+    normals : (H, W, 3) unit vectors, x to the right, y up, z out of the surface, or a picture (a path, uint8 or uint16)
+        in which 0 to 1 stand for -1 to 1. Worked out from the heights when None.
+    colors : (H, W, 3) linear reflectance, a picture (sRGB when a file or array of 8 or 16 bits), or one linear colour.
     roughness : 0 mirror-like to 1 matt; None for 0.6, or 0.05 of a translucent layer. There it blurs what is mirrored.
     specular : reflectance of the coat at normal incidence, 0 to 1; that of a translucent layer follows from its index.
     normal_convention : ``"directx"`` when y of the normals points down.
@@ -70,7 +71,7 @@ class ReliefLayer(Value):
         height_m = self.height_m
         if height_m is not None:
             height_m = checks.number("relief_layer.height_m", height_m, low=0.0, exclusive=True, unit="metres")
-        elif "heights" in files:
+        elif "heights" in files or checks.is_stored(self.heights):
             raise SceneError("relief_layer.height_m", "is missing", "say how high the value 1 of the picture is")
         store(
             self,
@@ -315,7 +316,7 @@ def _checked_heights(value: Any, height_m: float | None) -> Any:
             raise SceneError("relief_layer.height_m", "is given with heights that move", "they are metres already")
         return value
     given = np.full((1, 1), checks.number("relief_layer.heights", value)) if np.ndim(value) == 0 else value
-    result = checks.array("relief_layer.heights", given, (None, None))
+    result = checks.picture("relief_layer.heights", given, (None, None), linear=True)
     _check_size("heights", result)
     return result
 
@@ -323,7 +324,9 @@ def _checked_heights(value: Any, height_m: float | None) -> Any:
 def _checked_normals(value: Any) -> np.ndarray | None:
     if value is None:
         return None
-    result = checks.array("relief_layer.normals", value, (None, None, 3))
+    result = checks.picture("relief_layer.normals", value, (None, None, 3), linear=True)
+    if checks.is_stored(value):
+        result = checks.frozen(2.0 * result - 1.0)
     _check_size("normals", result)
     length = np.linalg.norm(result, axis=2)
     if (length < 1e-3).any() or (result[..., 2] <= -1e-3 * length).any():
@@ -334,7 +337,7 @@ def _checked_normals(value: Any) -> np.ndarray | None:
 def _checked_colors(value: Any) -> Any:
     if np.ndim(value) == 1:
         return checks.color("relief_layer.colors", value, high=1.0)
-    result = checks.array("relief_layer.colors", value, (None, None, 3))
+    result = checks.picture("relief_layer.colors", value, (None, None, 3))
     _check_size("colors", result)
     if result.min() < 0.0:
         raise SceneError("relief_layer.colors", "hold negative values", "they are linear reflectance from 0 to 1")
