@@ -21,12 +21,13 @@ from pellucid.scene.water_quality import (
     WaterQuality,
     quality_of,
 )
+from pellucid.techniques.water.borders import OpenBorder
 from pellucid.techniques.water.caustics import WaterLight
 from pellucid.techniques.water.glow import WaterGlow
 from pellucid.techniques.water.layouts import WaterParams, WaterViews
 from pellucid.techniques.water.prepare import WaveMaps, parameters, same_surfaces, surfaces_of, wave_maps
 from pellucid.techniques.water.region import Rectangle, covered
-from pellucid.techniques.water.views import SurfacePictures, hidden_box, needs_pictures
+from pellucid.techniques.water.views import SurfacePictures, hidden_box, needs_pictures, quality_seen_from
 from pellucid.techniques.water.wave_moments import moment_levels
 
 if TYPE_CHECKING:
@@ -62,14 +63,19 @@ class Body:
     version: int = 0
     params: np.ndarray = field(default_factory=lambda: np.zeros((), WaterParams))
     pictures: SurfacePictures | None = None
+    border: OpenBorder = field(default_factory=OpenBorder)
 
-    @property
-    def constants(self) -> dict[str, float]:
-        """Override constants of all shaders of this body; none depends on what moves."""
-        quality = self.quality
+    def constants(self, quality: WaterQuality, sides_by_rays: bool) -> dict[str, float]:
+        """Override constants of all shaders of this body.
+
+        Parameters
+        ----------
+        quality : of `views.quality_seen_from`. sides_by_rays : whether borders may be seen that no picture shows.
+        """
         return {
             "WATER_REFRACTION": float(REFRACTIONS.index(quality.refraction)),
             "WATER_REFLECTION": float(REFLECTIONS.index(quality.reflection)),
+            "WATER_SIDES_BY_RAYS": float(sides_by_rays),
             "WATER_UNDERSIDE": float(UNDERSIDES.index(quality.underside)),
             "WATER_FALLBACK": float(FALLBACKS.index(quality.fallback)),
             "WATER_FRESNEL": float(FRESNELS.index(quality.fresnel)),
@@ -159,13 +165,15 @@ class WaterTechnique:
         rate = body.quality.shading_rate if outside else 1
         squares = -(-targets.size[0] // rate), -(-targets.size[1] // rate)
         hits = self._target("water_hits", HIT_FORMAT, squares)
-        constants = {**body.constants, "WATER_RATE": float(rate)}
         bound = {**self._nothing, **body.bindings, **surroundings.bindings, **self._light.bindings(body)}
         bound |= {name: copy for name, (_, copy) in copies.items()}
-        if body.pictures is not None:
+        quality = quality_seen_from(surroundings.view, body.quality, body.item.level, body.waves.range_m)
+        if body.pictures is not None and needs_pictures(quality):
             waves = body.waves.limits_m, body.waves.slope
-            body.pictures.draw(encoder, body.item, body.quality, waves, surroundings, timer)
+            body.pictures.draw(encoder, body.item, quality, waves, surroundings, timer)
             bound |= body.pictures.bindings
+        sides = needs_pictures(quality) and body.border.shows(body.item, body.waves.limits_m[0], surroundings)
+        constants = {**body.constants(quality, sides), "WATER_RATE": float(rate)}
         composed = {**constants, **surroundings.shading_constants}
         if rate == 1:
             on_surface = {"scissor": region, "timer": timer}
@@ -215,6 +223,8 @@ class WaterTechnique:
             waves = wave_maps(item, surfaces_of(item.waves, 0.0))
             body = Body(item, quality, waves, {"wave_sampler": self.device.sampler("linear", "repeat")})
             self._upload(body)
+        if number < len(before):
+            body.border = before[number].border
         old = before[number].bindings if number < len(before) else {}
         if needs_pictures(quality):
             kept_pictures = before[number].pictures if number < len(before) else None

@@ -30,7 +30,7 @@ def first_triangle(origins: ArrayLike, directions: ArrayLike, triangles: ArrayLi
             u = np.einsum("ij,ij->i", to_origin, p) / determinant
             v = q @ d / determinant
             t = np.einsum("ij,ij->i", e2, q) / determinant
-        inside = (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (t > 1e-9)
+            inside = (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (t > 1e-9)
         ways.append(t[inside].min() if inside.any() else np.inf)
     return np.array(ways)
 

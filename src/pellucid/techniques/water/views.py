@@ -135,6 +135,23 @@ def needs_pictures(quality: WaterQuality) -> bool:
     return any(wanted_pictures(quality, None, 0.0))
 
 
+def quality_seen_from(view: View, quality: WaterQuality, level_m: float, range_m: tuple[float, float]) -> WaterQuality:
+    """What is left of a quality for a camera: rays instead of look-ups between the trough and the crest of the waves.
+
+    There it sees the surface from both sides, and the pictures are those of one. The thesis looks up what it sees from
+    below in any case; that stays.
+
+    Parameters
+    ----------
+    range_m : lowest and highest wave of the moment, over the level.
+    """
+    low, high = (level_m + wave for wave in range_m)
+    if quality.underside == "mihalik" or not low - view.near_m < view.position[1] < high + view.near_m:
+        return quality
+    mirrored = "rays" if quality.reflection in ("march", "point") else quality.reflection
+    return quality.replace(refraction="rays", reflection=mirrored)
+
+
 def wanted_pictures(quality: WaterQuality, view: View | None, level_m: float) -> tuple[bool, bool]:
     """Which of the two are looked up, below and above; from any place where no view is given."""
     may_look_up = view is None or bool(view.position[1] < level_m)

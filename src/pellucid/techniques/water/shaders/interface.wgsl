@@ -63,7 +63,7 @@ fn interface_light(hit: WaterHit, meets: bool, p_ws: vec3f, direction_ws: vec3f)
         let below = mirrors == from_within;
         let way = select(passing, water_mirrored(direction_ws, n_ws, hit.kind), mirrors);
         if any(weight > vec3f(0.0)) {
-            let seen = seen_along(p_ws, way, below);
+            let seen = seen_along(p_ws, way, below, hit.kind == WATER_SIDE);
             if WATER_DISPERSION {
                 radiance += weight * water_look(seen, p_ws, way, below);
             } else if below {

@@ -8,19 +8,21 @@
 override WATER_REFRACTION: u32 = 0u;  // water_quality.REFRACTIONS
 override WATER_REFLECTION: u32 = 0u;  // water_quality.REFLECTIONS
 override WATER_FALLBACK: u32 = 0u;    // water_quality.FALLBACKS
+override WATER_SIDES_BY_RAYS: bool = false;  // borders are seen that no picture is taken for
 
 const SEEN_BY_RAYS = 0u;
 
 // Either side, each way of looking in one place: a software driver executes all of them for all pixels.
-fn seen_along(p_ws: vec3f, direction_ws: vec3f, below: bool) -> Seen {
+fn seen_along(p_ws: vec3f, direction_ws: vec3f, below: bool, from_side: bool) -> Seen {
     if WATER_REFRACTION == 0u && WATER_REFLECTION == 0u {
         return seen_rays(p_ws, direction_ws, below);
     }
     let place = seen_place(p_ws, direction_ws, below);
     let sends_rays = select(WATER_REFLECTION, WATER_REFRACTION, below) == SEEN_BY_RAYS
-        || (WATER_FALLBACK == 0u && (place.found == PICTURE_UNKNOWN || place.found == PICTURE_HIDDEN));
+        || (WATER_FALLBACK == 0u && (place.found == PICTURE_UNKNOWN || place.found == PICTURE_HIDDEN))
+        || (WATER_SIDES_BY_RAYS && from_side);
     var seen = Seen(vec3f(0.0), 0.0, false);
-    if WATER_FALLBACK == 0u || WATER_REFRACTION == SEEN_BY_RAYS || WATER_REFLECTION == SEEN_BY_RAYS {
+    if WATER_FALLBACK == 0u || WATER_SIDES_BY_RAYS || WATER_REFRACTION == SEEN_BY_RAYS || WATER_REFLECTION == SEEN_BY_RAYS {
         if sends_rays {
             seen = seen_rays(p_ws, direction_ws, below);
         }
