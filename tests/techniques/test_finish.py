@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pellucid.errors import SceneError
-from pellucid.gpu import Device
+from pellucid.gpu import Device, probe
 from pellucid.optics import colour
 from pellucid.techniques.finish.glow import Glow
 from pellucid.techniques.finish.passes import TONE_MAPPINGS, Finish
@@ -41,6 +41,14 @@ def test_eight_bits_equal_the_float64_curve(device: Device, tone: str) -> None:
     expected = 255 * colour.srgb_encode(np.clip(CURVES[tone](0.8 * radiance), 0, 1))
     assert np.abs(found[..., :3] - expected).max() <= 0.52
     assert (found[..., 3] == 255).all()
+
+
+def test_polynomials_of_agx_are_the_curve(device: Device) -> None:
+    # From below the lowest stop to above the highest, grey and of one colour
+    grey = np.geomspace(1e-5, 50.0, 4000)[:, None]
+    radiance = np.concatenate([np.zeros((1, 3)), grey * np.ones(3), grey * np.array([1.0, 0.2, 0.02])])
+    found = probe("techniques/finish/shaders/agx_encoded", "agx_encoded", radiance, device=device)
+    np.testing.assert_allclose(found, colour.srgb_encode(colour.tone_agx(radiance)), atol=1e-4)
 
 
 def test_changing_the_curve_compiles_nothing(device: Device, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -35,9 +35,17 @@ class Finish:
         self._glow = Glow(device)
         self._no_glow = device.texture(size=(1, 1), format="rgba16float", usage=("sample",), label="no glow")
         self._share = 0.0
-        self._pass = RenderPass(
-            device, "techniques/finish/shaders/finish", targets=(target_format,), nearest=("radiance",)
-        )
+        # Both at once, so that no slider compiles anything.
+        self._passes = {
+            glow: RenderPass(
+                device,
+                "techniques/finish/shaders/finish",
+                targets=(target_format,),
+                constants={"FINISH_GLOW": float(glow)},
+                nearest=("radiance",),
+            )
+            for glow in (False, True)
+        }
 
     def prepare(self, exposure: float = 1.0, tone_mapping: str = "agx", glow: float = 0.0) -> None:
         """Upload the settings; nothing is compiled anew.
@@ -68,8 +76,9 @@ class Finish:
         radiance : texture, linear Rec.709, any float format; without glow a view will do.
         target : view of the same size; receives sRGB values, row 0 at the top, alpha 1.
         """
-        blurred = self._glow.draw(encoder, radiance, timer) if self._share > 0.0 else self._no_glow
-        self._pass.run(
+        glows = self._share > 0.0
+        blurred = self._glow.draw(encoder, radiance, timer) if glows else self._no_glow
+        self._passes[glows].run(
             encoder,
             color=[target],
             clear=[(0.0, 0.0, 0.0, 1.0)],

@@ -1,5 +1,6 @@
 // Radiance to a picture for a screen: glow, exposure, colours of the screen, tone mapping, sRGB.
 //!import optics/colour
+//!import techniques/finish/shaders/agx_encoded
 //!import surroundings/shaders/full_picture
 //!struct FinishParams from techniques.finish.passes
 
@@ -8,23 +9,25 @@
 @group(0) @binding(2) var blurred: texture_2d<f32>;
 @group(0) @binding(3) var blurred_sampler: sampler;
 
+override FINISH_GLOW = false;
+
 @fragment
 fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     var light = textureLoad(radiance, vec2i(position.xy), 0).rgb;
-    let uv = 0.5 * position.xy / vec2f(textureDimensions(blurred));
-    let scattered = mix(light, textureSampleLevel(blurred, blurred_sampler, uv, 0.0).rgb, finish_params.glow);
-    light = select(light, scattered, finish_params.glow > 0.0);
-    let exposed = into_gamut(finish_params.exposure * light);
-    return vec4f(srgb_encode(saturate(tone_mapped(exposed))), 1.0);
+    if FINISH_GLOW {
+        let uv = 0.5 * position.xy / vec2f(textureDimensions(blurred));
+        light = mix(light, textureSampleLevel(blurred, blurred_sampler, uv, 0.0).rgb, finish_params.glow);
+    }
+    return vec4f(shown(into_gamut(finish_params.exposure * light)), 1.0);
 }
 
 // The order of passes.TONE_MAPPINGS
-fn tone_mapped(rgb: vec3f) -> vec3f {
+fn shown(rgb: vec3f) -> vec3f {
     switch finish_params.tone_mapping {
-        case 1u: { return tone_reinhard(rgb); }
-        case 2u: { return tone_aces(rgb); }
-        case 3u: { return tone_agx(rgb); }
-        case 4u: { return tone_khronos_neutral(rgb); }
-        default: { return rgb; }
+        case 1u: { return srgb_encode(tone_reinhard(rgb)); }
+        case 2u: { return srgb_encode(tone_aces(rgb)); }
+        case 3u: { return agx_encoded(rgb); }
+        case 4u: { return srgb_encode(tone_khronos_neutral(rgb)); }
+        default: { return srgb_encode(saturate(rgb)); }
     }
 }
