@@ -12,7 +12,8 @@ import numpy as np
 from pellucid.errors import SceneError
 from pellucid.frame import Frame
 from pellucid.gpu import Device, PassTimer
-from pellucid.gpu.targets import Targets
+from pellucid.gpu.readback import TextureRead, read_back
+from pellucid.gpu.targets import Held, TargetRing, Targets
 from pellucid.scene import Camera, RefractiveSheet, RefractiveVolume, ReliefSurface, Scene, Water
 from pellucid.scene.checks import number
 from pellucid.surroundings import Surroundings
@@ -59,8 +60,10 @@ class Renderer:
         self._sky = Sky(self.device)
         self._finish = Finish(self.device)
         self._techniques: dict[type, Any] = {}
-        self._targets: Targets | None = None
+        self._targets = TargetRing(self.device)
+        self._timer = PassTimer(self.device)
         self._display: Any = None
+        self._display_view: Any = None
 
     @property
     def nbytes(self) -> int:
@@ -91,22 +94,29 @@ class Renderer:
         begun = clock.perf_counter()
         number("time", time, unit="seconds")
         width, height = self._check(scene, size, samples)
-        self._use_size((width, height))
-        assert self._targets is not None
-        timer = PassTimer(self.device)
+        targets, held = self._use_size((width, height))
+        self._timer.forget()
         self._prepare(scene, (width, height))
         self._simulate(time)
-        self.device.wait()
         timings = {"prepare": 1e3 * (clock.perf_counter() - begun)}
         self._illuminate(scene, timings)
-        mean, depth = self._accumulate(scene, samples, timer, timings, progress)
         self._finish.prepare(scene.exposure, scene.tone_mapping, scene.glow)
-        encoder = self.device.wgpu.create_command_encoder()
-        self._finish.draw(encoder, self._targets.color, self._display.create_view(), timer)
-        self._submit(encoder, timer, timings)
-        display = self.device.read_texture(self._display)[..., :3]
+        averaged: tuple[np.ndarray, np.ndarray] | None = None
+        if samples > 1:
+            averaged = self._accumulate(scene, samples, targets, timings, progress)
+            self.device.write_texture(targets.color, averaged[0])
+            encoder = self.device.wgpu.create_command_encoder()
+        else:
+            encoder = self._draw(scene, targets)
+        self._finish.draw(encoder, targets.color, self._display_view, self._timer)
+        display = self._submit(encoder, timings, [TextureRead(self._display)])[0][..., :3]
         timings["total"] = 1e3 * (clock.perf_counter() - begun)
-        return Frame(mean[..., :3], _metres(depth, scene.camera), display, timings)
+        camera = scene.camera
+        if averaged is not None:
+            return Frame(averaged[0][..., :3], _metres(averaged[1], camera), display, timings)
+        if progress is not None:
+            progress(1.0)
+        return Frame(lambda: held.color()[..., :3], lambda: _metres(held.depth(), camera), display, timings)
 
     def illuminate(
         self, scene: Scene, volume: RefractiveVolume, progress: Callable[[float], None] | None = None
@@ -140,11 +150,12 @@ class Renderer:
             raise SceneError("samples", f"is {samples!r}", "use a whole number from 1 to 65536")
         return width, height
 
-    def _use_size(self, size: tuple[int, int]) -> None:
-        if self._targets is None or self._targets.size != size:
-            self._targets = Targets(self.device, size)
+    def _use_size(self, size: tuple[int, int]) -> tuple[Targets, Held]:
+        if self._display is None or (self._display.width, self._display.height) != size:
             usage = ("render", "copy", "sample")
             self._display = self.device.texture(size=size, format="rgba8unorm", usage=usage, label="display")
+            self._display_view = self._display.create_view()
+        return self._targets.take(size)
 
     def _prepare(self, scene: Scene, size: tuple[int, int]) -> None:
         items = {kind: [o for o in scene.objects if type(o) is kind] for kind in TECHNIQUES}
@@ -177,39 +188,31 @@ class Renderer:
         self,
         scene: Scene,
         samples: int,
-        timer: PassTimer,
+        targets: Targets,
         timings: dict[str, float],
         progress: Callable[[float], None] | None,
     ) -> tuple[np.ndarray, np.ndarray]:
-        """The mean of the samples, which is left in the colour target too, and the depth of the first."""
-        targets = self._targets
-        assert targets is not None
-        total = Accumulator(self.device, targets.size) if samples > 1 else None
+        """The mean of the samples, and the depth of the first."""
+        total = Accumulator(self.device, targets.size)
         depth = np.empty(0)
         for index in range(samples):
-            offset = _jitter(index) if samples > 1 else (0.0, 0.0)
-            self.surroundings.set_camera(scene.camera, targets.size, offset, index)
-            encoder = self.device.wgpu.create_command_encoder()
-            self._draw(encoder, scene, targets, timer)
-            if total is not None:
-                total.add(encoder, targets.color, timer)
-            self._submit(encoder, timer, timings)
+            encoder = self._draw(scene, targets, _jitter(index), index)
+            total.add(encoder, targets.color, self._timer)
+            found = self._submit(encoder, timings, [TextureRead(targets.depth)] if index == 0 else [])
             if index == 0:
-                depth = targets.read_depth()
+                depth = found[0][..., 0]
             if progress is not None:
                 progress((index + 1) / samples)
-        if total is None:
-            return self.device.read_texture(targets.color), depth
-        mean = total.mean()
-        self.device.write_texture(targets.color, mean)
-        return mean, depth
+        return total.mean(), depth
 
-    def _draw(self, encoder: Any, scene: Scene, targets: Targets, timer: PassTimer) -> None:
-        """Illuminate, opaque, refractive: everything up to the linear picture.
+    def _draw(self, scene: Scene, targets: Targets, offset: tuple[float, float] = (0.0, 0.0), index: int = 0) -> Any:
+        """Encode illuminate, opaque, refractive: everything up to the linear picture.
 
         Each technique draws all of its objects; they follow one another far to near, by the nearest object of each.
         """
-        around = self.surroundings
+        around, timer = self.surroundings, self._timer
+        around.set_camera(scene.camera, targets.size, offset, index)
+        encoder = self.device.wgpu.create_command_encoder()
         self._opaque.illuminate(encoder, around, timer)
         hidden = next((t.hides(around.view) for t in self._techniques.values() if hasattr(t, "hides")), None)
         self._opaque.draw(encoder, targets.color, targets.depth, around, timer, hidden, self._sky)
@@ -218,11 +221,15 @@ class Renderer:
             nearest[type(item)] = min(nearest.get(type(item), np.inf), _distance(item, scene.camera))
         for kind in sorted(nearest, key=nearest.__getitem__, reverse=True):
             self._techniques[kind].draw(encoder, targets, scene.camera, around, timer)
+        return encoder
 
-    def _submit(self, encoder: Any, timer: PassTimer, timings: dict[str, float]) -> None:
-        self.device.wgpu.queue.submit([encoder.finish()])
-        for label, ms in timer.milliseconds().items():
+    def _submit(self, encoder: Any, timings: dict[str, float], reads: list[TextureRead]) -> list[np.ndarray]:
+        """Have the work done, all that is read of it with one wait."""
+        ticks = self._timer.resolve(encoder)
+        found = read_back(self.device, [*reads, *ticks], encoder)
+        for label, ms in self._timer.summed(found.pop()).items() if ticks else ():
             timings[label] = timings.get(label, 0.0) + ms
+        return found
 
 
 def _distance(item: Any, camera: Camera) -> float:

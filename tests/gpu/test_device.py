@@ -15,17 +15,18 @@ import pytest
 
 from pellucid.errors import NoAdapterError, PellucidError
 from pellucid.gpu import device as device_module
-from pellucid.gpu.device import _TEXEL, Device, adapter_remedy
+from pellucid.gpu.device import Device, adapter_remedy
+from pellucid.gpu.readback import TEXEL
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 RNG = np.random.default_rng(5)
-COLOR_FORMATS = [name for name in _TEXEL if not name.startswith("depth")]
+COLOR_FORMATS = [name for name in TEXEL if not name.startswith("depth")]
 
 
 def texels(format: str, *shape: int) -> np.ndarray:
-    dtype, channels = _TEXEL[format]
+    dtype, channels = TEXEL[format]
     return RNG.integers(0, 256, (*shape, channels)).astype(dtype)
 
 

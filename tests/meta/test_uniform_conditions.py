@@ -29,7 +29,6 @@ ALLOWED = {
     ("techniques/eikonal/shaders/light_others.wgsl", "k < MOST_OTHERS && others.half[k].x > 0.0"): (
         "bodies of the scene, which stay as they are"
     ),
-    ("techniques/finish/shaders/finish.wgsl", "finish_params.tone_mapping"): "four short cases; a choice of the user",
 }
 
 WORDS = {"true", "false", "let", "var", "u32", "i32", "f32", "bool", "vec2f", "vec3f", "vec4f", "vec2u", "vec2i"}

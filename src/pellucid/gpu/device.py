@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from pellucid.errors import NoAdapterError, PellucidError
+from pellucid.gpu.readback import TEXEL, BufferRead, TextureRead, read_back
 
 _REMEDIES = {
     "Linux": "install a Vulkan driver; without a GPU the software one will do: "
@@ -33,19 +34,6 @@ _RAISED_LIMITS = (
     *("max-storage-buffer-binding-size", "max-buffer-size", "max-texture-dimension-3d"),
     "max-sampled-textures-per-shader-stage",
 )
-_TEXEL: dict[str, tuple[type, int]] = {
-    "rgba32float": (np.float32, 4),
-    "rg32float": (np.float32, 2),
-    "r32float": (np.float32, 1),
-    "rgba16float": (np.float16, 4),
-    "rg16float": (np.float16, 2),
-    "r16float": (np.float16, 1),
-    "rgba32uint": (np.uint32, 4),
-    "rgba8unorm": (np.uint8, 4),
-    "rgba8unorm-srgb": (np.uint8, 4),
-    "r8unorm": (np.uint8, 1),
-    "depth32float": (np.float32, 1),
-}
 
 
 def adapter_remedy(software: bool = False) -> str:
@@ -161,7 +149,7 @@ class Device:
         size = int(data) if isinstance(data, int | np.integer) else data.nbytes
         self._check_buffer_size(size, usage, label)
         size = max(16, -(-size // 16) * 16)
-        with self._memory(label or "buffer", f"{size} bytes"):
+        with self.memory(label or "buffer", f"{size} bytes"):
             out = self.wgpu.create_buffer(size=size, usage=flag, label=label)
         if not isinstance(data, int | np.integer):
             self.write(out, data)
@@ -178,7 +166,7 @@ class Device:
 
     @staticmethod
     @contextlib.contextmanager
-    def _memory(label: str, what: str) -> Iterator[None]:
+    def memory(label: str, what: str) -> Iterator[None]:
         """Within the limits a device can still run out of memory."""
         import wgpu
 
@@ -203,21 +191,14 @@ class Device:
     def read(self, buffer: Any, dtype: Any, shape: Sequence[int] | int) -> np.ndarray:
         """Copy a buffer back as an array of `dtype` and `shape`; waits until the work before it is done."""
         shape = (shape,) if isinstance(shape, int) else tuple(shape)
-        dtype = np.dtype(dtype)
-        count = int(np.prod(shape))
-        if count == 0:
-            return np.zeros(shape, dtype)
-        size = -(-count * dtype.itemsize // 4) * 4
-        if size > buffer.size:
-            raise PellucidError(f"{buffer.label or 'buffer'}: {size} bytes asked of a buffer of {buffer.size}")
-        raw = self.wgpu.queue.read_buffer(buffer, 0, size)
-        return np.frombuffer(raw, dtype=dtype, count=count).reshape(shape).copy()
+        read = BufferRead(buffer, np.dtype(dtype), shape)
+        return read_back(self, [read])[0] if read.nbytes else np.zeros(shape, dtype)
 
     def wait(self) -> None:
         """Block until everything submitted so far is done."""
         if "fence" not in self.cache:
             self.cache["fence"] = self.buffer(16, "storage", "fence")
-        self.wgpu.queue.read_buffer(self.cache["fence"], 0, 4)
+        self.read(self.cache["fence"], np.uint32, 1)
 
     # ---- textures ------------------------------------------------------------------------------------------
 
@@ -256,7 +237,7 @@ class Device:
             flag |= flags[name]
         extent = self._extent(array, size, dimension, layers)
         self._check_texture_size(extent, dimension, label)
-        with self._memory(label or "texture", f"{' x '.join(map(str, extent))} texels of {format}"):
+        with self.memory(label or "texture", f"{' x '.join(map(str, extent))} texels of {format}"):
             texture = self.wgpu.create_texture(
                 size=extent, format=format, dimension=dimension, mip_level_count=mips, usage=flag, label=label
             )
@@ -294,7 +275,7 @@ class Device:
         ------
         PellucidError : when the array has not the size or the channels of the level, or is not bytes for bytes.
         """
-        dtype, channels = _TEXEL[texture.format]
+        dtype, channels = TEXEL[texture.format]
         is_stack = texture.dimension == "3d" or array.ndim == 4
         depth, height, width = array.shape[:3] if is_stack else (1, *array.shape[:2])
         level = max(1, texture.height >> mip), max(1, texture.width >> mip)
@@ -314,35 +295,7 @@ class Device:
 
     def read_texture(self, texture: Any, layer: int = 0, mip: int = 0) -> np.ndarray:
         """Copy one layer (of a 3D texture: one slice) and level back as (H, W, C)."""
-        dtype, channels = _TEXEL[texture.format]
-        width, height = max(1, texture.width >> mip), max(1, texture.height >> mip)
-        row = width * channels * np.dtype(dtype).itemsize
-        padded = -(-row // 256) * 256
-        staging = self._staging(padded * height)
-        encoder = self.wgpu.create_command_encoder()
-        source = {"texture": texture, "mip_level": mip, "origin": (0, 0, layer)}
-        target = {"buffer": staging, "bytes_per_row": padded, "rows_per_image": height}
-        encoder.copy_texture_to_buffer(source, target, (width, height, 1))
-        self.wgpu.queue.submit([encoder.finish()])
-        staging.map_sync("READ", 0, padded * height)
-        try:
-            mapped = staging.read_mapped(0, padded * height, copy=False)
-            item = np.dtype(dtype).itemsize
-            strides = (padded, channels * item, item)
-            return np.ndarray((height, width, channels), dtype, mapped, strides=strides).copy()
-        finally:
-            staging.unmap()
-
-    def _staging(self, nbytes: int) -> Any:
-        """A buffer that pictures are read back through; kept, for fresh memory costs as much as the copy."""
-        import wgpu
-
-        kept = self.cache.get("staging")
-        if kept is None or not nbytes <= kept.size <= 8 * nbytes + 65536:
-            with self._memory("texture read-back", f"{nbytes} bytes"):
-                usage = wgpu.BufferUsage.MAP_READ | wgpu.BufferUsage.COPY_DST
-                self.cache["staging"] = kept = self.wgpu.create_buffer(size=nbytes, usage=usage)
-        return kept
+        return read_back(self, [TextureRead(texture, layer, mip)])[0]
 
     def sampler(self, filter: str = "linear", address: Any = "clamp", compare: str | None = None) -> Any:
         """A sampler; `address` is "clamp", "repeat" or one of them for each of u, v, w."""

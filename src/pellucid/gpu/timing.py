@@ -5,8 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from pellucid.gpu.device import Device
+from pellucid.gpu.readback import BufferRead
 
 
 class PassTimer:
@@ -22,6 +24,7 @@ class PassTimer:
         self._labels: list[str] = []
         self._capacity = min(capacity, 2048)  # WebGPU: a query set holds at most 4096
         self._queries: Any = None
+        self._resolved: Any = None
         if self.available:
             self._queries = device.wgpu.create_query_set(type="timestamp", count=2 * self._capacity)
 
@@ -37,20 +40,25 @@ class PassTimer:
             "end_of_pass_write_index": 2 * index + 1,
         }
 
-    def milliseconds(self) -> dict[str, float]:
-        """{label: ms} since the last call; waits for the work."""
+    def forget(self) -> None:
+        """Leave out the passes since the last reading: a frame that failed has left them."""
+        self._labels.clear()
+
+    def resolve(self, encoder: Any) -> list[BufferRead]:
+        """Encode, after the passes, what `summed` needs to be read of them; nothing when there were none."""
         count = len(self._labels)
         if not count:
-            return {}
-        import wgpu
+            return []
+        if self._resolved is None:
+            import wgpu
 
-        size = 16 * count
-        usage = wgpu.BufferUsage.QUERY_RESOLVE | wgpu.BufferUsage.COPY_SRC
-        resolved = self.device.wgpu.create_buffer(size=max(size, 256), usage=usage)
-        encoder = self.device.wgpu.create_command_encoder()
-        encoder.resolve_query_set(self._queries, 0, 2 * count, resolved, 0)
-        self.device.wgpu.queue.submit([encoder.finish()])
-        ticks = self.device.read(resolved, np.uint64, (count, 2))
+            usage = wgpu.BufferUsage.QUERY_RESOLVE | wgpu.BufferUsage.COPY_SRC
+            self._resolved = self.device.wgpu.create_buffer(size=max(16 * self._capacity, 256), usage=usage)
+        encoder.resolve_query_set(self._queries, 0, 2 * count, self._resolved, 0)
+        return [BufferRead(self._resolved, np.dtype(np.uint64), (count, 2))]
+
+    def summed(self, ticks: npt.NDArray[np.uint64]) -> dict[str, float]:
+        """{label: ms} of the (N, 2) ticks that `resolve` asked to be read."""
         out: dict[str, float] = {}
         for label, (begin, end) in zip(self._labels, ticks, strict=True):
             # Some drivers reset their clock inside a pass: unsigned ticks would make that centuries.
@@ -58,6 +66,15 @@ class PassTimer:
             out[label] = out.get(label, 0.0) + ticks_taken * _tick_ns(self.device) * 1e-6
         self._labels.clear()
         return out
+
+    def milliseconds(self) -> dict[str, float]:
+        """{label: ms} since the last call; waits for the work."""
+        encoder = self.device.wgpu.create_command_encoder()
+        asked = self.resolve(encoder)
+        if not asked:
+            return {}
+        self.device.wgpu.queue.submit([encoder.finish()])
+        return self.summed(self.device.read(asked[0].buffer, asked[0].dtype, asked[0].shape))
 
 
 def _tick_ns(device: Device) -> float:

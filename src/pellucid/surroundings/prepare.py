@@ -68,6 +68,7 @@ class Surroundings:
         self._lamp_kinds = lights.lamp_constants(np.zeros(0, Light))
         self.caustics = CausticMaps(device, self._resources)
         self.submersion = Submersion(device, self._resources)
+        self._viewed: tuple[Camera, tuple[int, int]] | None = None
         self._sky = np.zeros((1, 2, 3))
         self._through: dict[tuple[float, ...], SkyThroughSurface] = {}
 
@@ -168,7 +169,8 @@ class Surroundings:
         jitter : offset of the sampled point from each pixel's centre, pixels right and down.
         sample_index : number of the picture among those that are averaged.
         """
-        self.view = view_of(camera, size)
+        if self._viewed != (camera, size):
+            self._viewed, self.view = (camera, size), view_of(camera, size)
         write_view(self._frame, self.view, size, jitter)
         self._frame["sample_index"] = sample_index
         self.device.write(self._resources["frame"], self._frame.reshape(1))

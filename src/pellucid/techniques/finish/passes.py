@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 TONE_MAPPINGS = ("linear", "reinhard", "aces", "agx", "khronos")
 
-FinishParams = struct([("exposure", "f32"), ("tone_mapping", "u32"), ("glow", "f32")])
+FinishParams = struct([("exposure", "f32"), ("glow", "f32")])
 
 
 class Finish:
@@ -35,17 +35,19 @@ class Finish:
         self._glow = Glow(device)
         self._no_glow = device.texture(size=(1, 1), format="rgba16float", usage=("sample",), label="no glow")
         self._share = 0.0
-        # Both at once, so that no slider compiles anything.
+        # All at once, so that no choice compiles anything; in one shader each pixel would pay for every curve.
         self._passes = {
-            glow: RenderPass(
+            (tone, glow): RenderPass(
                 device,
                 "techniques/finish/shaders/finish",
                 targets=(target_format,),
-                constants={"FINISH_GLOW": float(glow)},
+                constants={"FINISH_TONE": float(index), "FINISH_GLOW": float(glow)},
                 nearest=("radiance",),
             )
+            for index, tone in enumerate(TONE_MAPPINGS)
             for glow in (False, True)
         }
+        self._tone = TONE_MAPPINGS[0]
 
     def prepare(self, exposure: float = 1.0, tone_mapping: str = "agx", glow: float = 0.0) -> None:
         """Upload the settings; nothing is compiled anew.
@@ -64,8 +66,8 @@ class Finish:
         if tone_mapping not in TONE_MAPPINGS:
             raise SceneError("scene.tone_mapping", f"'{tone_mapping}' is not one of {', '.join(TONE_MAPPINGS)}")
         record = np.zeros(1, FinishParams)
-        record["exposure"], record["tone_mapping"] = exposure, TONE_MAPPINGS.index(tone_mapping)
-        record["glow"] = self._share = glow
+        self._tone, self._share = tone_mapping, glow
+        record["exposure"], record["glow"] = exposure, glow
         self.device.write(self._params, record)
 
     def draw(self, encoder: Any, radiance: Any, target: Any, timer: PassTimer | None = None) -> None:
@@ -78,7 +80,7 @@ class Finish:
         """
         glows = self._share > 0.0
         blurred = self._glow.draw(encoder, radiance, timer) if glows else self._no_glow
-        self._passes[glows].run(
+        self._passes[self._tone, glows].run(
             encoder,
             color=[target],
             clear=[(0.0, 0.0, 0.0, 1.0)],

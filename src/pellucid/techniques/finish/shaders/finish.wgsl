@@ -10,6 +10,7 @@
 @group(0) @binding(3) var blurred_sampler: sampler;
 
 override FINISH_GLOW = false;
+override FINISH_TONE = 3u;  // place in passes.TONE_MAPPINGS
 
 @fragment
 fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
@@ -21,9 +22,8 @@ fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     return vec4f(shown(into_gamut(finish_params.exposure * light)), 1.0);
 }
 
-// The order of passes.TONE_MAPPINGS
 fn shown(rgb: vec3f) -> vec3f {
-    switch finish_params.tone_mapping {
+    switch FINISH_TONE {
         case 1u: { return srgb_encode(tone_reinhard(rgb)); }
         case 2u: { return srgb_encode(tone_aces(rgb)); }
         case 3u: { return agx_encoded(rgb); }
