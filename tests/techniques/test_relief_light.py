@@ -239,11 +239,10 @@ def test_light_is_worked_out_once_for_each_move(lit: Lit, device: Device) -> Non
     lamp = sun(30.0, 20.0)
     runs = lit.maps(surface, lamp).runs
     assert lit.maps(surface, lamp).runs == runs
-    kernels = lit.technique._light_passes._kernels
-    known = len(device.cache), len(kernels)
+    known = len(device.cache), len(lit.technique.pipelines)
     assert lit.maps(surface, sun(31.0, 20.0)).runs == runs + 1
     assert lit.maps(surface.replace(rotation=(10.0, 0.0, 0.0)), sun(31.0, 20.0)).runs == runs + 2
-    assert (len(device.cache), len(kernels)) == known
+    assert (len(device.cache), len(lit.technique.pipelines)) == known
 
 
 def test_maps_are_for_planes_and_lamps_that_see_all_tiles_alike() -> None:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from pellucid.fields.waves import Disturbance, Ripples
-from pellucid.gpu import ComputeKernel, Device
+from pellucid.gpu import ComputeKernel, Device, Pipelines
 from pellucid.simulation.layouts import RippleDent, RippleParams, RipplePush
 
 #: Cells of a workgroup, in a row: neighbours in memory are three times as fast as squares on the software driver.
@@ -140,8 +140,4 @@ class RippleSimulation:
 
 
 def _kernel(device: Device, name: str) -> ComputeKernel:
-    key = ("simulation", name)
-    if key not in device.cache:
-        device.cache[key] = ComputeKernel(device, f"simulation/shaders/ripple_{name}")
-    kernel: ComputeKernel = device.cache[key]
-    return kernel
+    return Pipelines(device, shared=True).kernel(f"simulation/shaders/ripple_{name}")

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellucid.errors import SceneError
+from pellucid.gpu import ComputeKernel, Pipelines, RenderPass
 from pellucid.scene import checks
 from pellucid.surroundings.charts import TABLE_CHARTS, TABLE_TEXELS, Charts, Reach, build_charts
 from pellucid.surroundings.layouts import LandParams, LookCount, OutPatch
@@ -233,21 +234,10 @@ class CausticMaps:
     def _format(self) -> str:
         return "rgba32float" if self.device.float32_filterable else "rgba16float"
 
-    def _kernel(self, name: str) -> Any:
-        from pellucid.gpu.kernel import ComputeKernel
+    def _kernel(self, name: str) -> ComputeKernel:
+        return Pipelines(self.device, shared=True).kernel(f"surroundings/shaders/{name}")
 
-        key = ("caustics", name)
-        if key not in self.device.cache:
-            self.device.cache[key] = ComputeKernel(self.device, f"surroundings/shaders/{name}")
-        return self.device.cache[key]
-
-    def _resolver(self) -> Any:
-        from pellucid.gpu.kernel import RenderPass
-
-        key = ("caustics", "resolve")
-        if key not in self.device.cache:
-            constants = {} if self.device.float32_filterable else {"MOST": HALF_MAX}
-            self.device.cache[key] = RenderPass(
-                self.device, "surroundings/shaders/resolve_caustics", targets=[self._format] * 2, constants=constants
-            )
-        return self.device.cache[key]
+    def _resolver(self) -> RenderPass:
+        constants = {} if self.device.float32_filterable else {"MOST": HALF_MAX}
+        module, formats = "surroundings/shaders/resolve_caustics", [self._format] * 2
+        return Pipelines(self.device, shared=True).draw(module, constants, targets=formats)

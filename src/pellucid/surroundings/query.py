@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pellucid.gpu import Pipelines
 from pellucid.surroundings.layouts import QueryHit, QueryRay
 
 if TYPE_CHECKING:
@@ -52,16 +53,11 @@ class Query:
         return out["value"].reshape(shape), out["direction"].reshape(shape)
 
     def _run(self, entry: str, origins: np.ndarray, directions: np.ndarray, t_max: float) -> np.ndarray:
-        from pellucid.gpu.kernel import ComputeKernel
-
         rays = np.zeros(len(directions), QueryRay)
         rays["origin"], rays["direction"], rays["t_max"] = origins, directions, t_max
         constants = self.surroundings.shading_constants
-        key = ("surroundings query", entry, *constants.values())
-        if key not in self.device.cache:
-            module = "surroundings/shaders/query"
-            self.device.cache[key] = ComputeKernel(self.device, module, entry=entry, constants=constants)
+        kernel = Pipelines(self.device, shared=True).kernel("surroundings/shaders/query", constants, entry)
         found = self.device.buffer(QueryHit.itemsize * len(rays), label="query hits")
         own = {"query_rays": self.device.buffer(rays, label="query rays"), "query_hits": found}
-        self.device.cache[key].run((-(-len(rays) // 64), 1, 1), {**own, **self.surroundings.bindings})
+        kernel.run((-(-len(rays) // 64), 1, 1), {**own, **self.surroundings.bindings})
         return self.device.read(found, QueryHit, len(rays))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pellucid.gpu.kernel import RenderPass
+from pellucid.gpu import Pipelines, RenderPass
 from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT
 from pellucid.surroundings.culling import Clusters, clusters, visible_ranges
 
@@ -75,6 +75,7 @@ class SceneView:
     def __init__(self, device: Device, format: str = COLOR_FORMAT) -> None:
         self.device = device
         self.format = format
+        self._pipelines = Pipelines(device, ("shaded_rest", "shaded_depth"), shared=True)
         self._triangles: Any = None
         self._apart: tuple[Any, Any] | None = None
         self._frame: Any = None
@@ -269,13 +270,7 @@ class SceneView:
     def _pass(self, module: str, constants: dict[str, float], **options: Any) -> RenderPass:
         """A pipeline; all views of a device share it, for a software driver compiles a shader for seconds."""
         options = {"targets": (self.format,), "depth": DEPTH_FORMAT, "depth_write": False, **options}
-        key = ("scene view", module, *options["targets"], *constants.values())
-        cache = self.device.cache
-        if key not in cache:
-            nearest = ("shaded_rest", "shaded_depth")
-            cache[key] = RenderPass(self.device, f"{SHADERS}/{module}", constants=constants, nearest=nearest, **options)
-        made: RenderPass = cache[key]
-        return made
+        return self._pipelines.draw(f"{SHADERS}/{module}", constants, **options)
 
     def _written(self, buffer: Any, record: np.ndarray, label: str) -> Any:
         buffer = buffer or self.device.buffer(record.nbytes, "uniform", label)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pellucid.gpu import ComputeKernel, Device
+from pellucid.gpu import ComputeKernel, Device, Pipelines
 from pellucid.scene import LightQuality
 from pellucid.surroundings.layouts import OutPatch
 from pellucid.techniques.eikonal.layouts import (
@@ -105,7 +105,7 @@ class LightSimulator:
 
     def __init__(self, device: Device) -> None:
         self.device = device
-        self._kernels: dict[Any, ComputeKernel] = {}
+        self._pipelines = Pipelines(device)
         self._buffers: dict[str, Any] = {}
         self._sums: list[dict[str, Any]] = []
         self._followed: list[_Followed] = []
@@ -389,11 +389,7 @@ class LightSimulator:
         return before
 
     def _kernel(self, name: str, constants: dict[str, float], entry: str = "main") -> ComputeKernel:
-        key = (name, entry, *sorted(constants.items()))
-        if key not in self._kernels:
-            module = f"techniques/eikonal/shaders/{name}"
-            self._kernels[key] = ComputeKernel(self.device, module, entry, constants)
-        return self._kernels[key]
+        return self._pipelines.kernel(f"techniques/eikonal/shaders/{name}", constants, entry)
 
 
 def generations_for(quality: LightQuality) -> int:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pellucid.gpu import ComputeKernel, Device, RenderPass
+from pellucid.gpu import ComputeKernel, Device, Pipelines, RenderPass
 from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT, Targets
 from pellucid.surroundings.charts import Reach
 from pellucid.techniques.eikonal.bodies import Body
@@ -80,14 +80,14 @@ class EikonalTechnique:
 
     Attributes
     ----------
-    bodies : what was prepared last.
+    bodies : what was prepared last. pipelines : one for each choice that a volume was drawn with.
     """
 
     def __init__(self, device: Device) -> None:
         self.device = device
         self._loaded: dict[Any, _Loaded] = {}
         self.bodies: list[Body] = []
-        self._kernels: dict[Any, ComputeKernel] = {}
+        self.pipelines = Pipelines(device, ("screen_color",))
         self._no_looks = device.buffer(np.array([(0, 1, 1, 0)] * LOOK_QUEUES, LookCount), "storage", "no looks")
         self._brdfs = BrdfTables(device)
         self._lists: dict[str, Any] = {}
@@ -373,11 +373,7 @@ class EikonalTechnique:
         return self._kernel(name, constants)
 
     def _kernel(self, name: str, constants: dict[str, float]) -> ComputeKernel:
-        key = (name, *constants.items())
-        if key not in self._kernels:
-            module = f"techniques/eikonal/shaders/{name}"
-            self._kernels[key] = ComputeKernel(self.device, module, constants=constants, nearest=("screen_color",))
-        return self._kernels[key]
+        return self.pipelines.kernel(f"techniques/eikonal/shaders/{name}", constants)
 
 
 def _meets_meshes(body: Body, box: Box, surroundings: Surroundings) -> bool:

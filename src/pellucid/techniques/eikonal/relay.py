@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from pellucid.gpu import ComputeKernel, Device
+from pellucid.gpu import ComputeKernel, Device, Pipelines
 from pellucid.techniques.eikonal.bodies import Body
 from pellucid.techniques.eikonal.layouts import BodyBox, LookCount
 from pellucid.techniques.eikonal.resources import LOOKS_PER_PIXEL, scale_of
@@ -33,8 +33,7 @@ class Relay:
 
     def __init__(self, device: Device) -> None:
         self.device = device
-        self._kernels: dict[bool, ComputeKernel] = {}
-        self._begin: ComputeKernel | None = None
+        self._pipelines = Pipelines(device)
         self._count = 0
         self._pixels = 0
         self._empty = device.buffer(16, "storage", "no lists")
@@ -120,14 +119,7 @@ class Relay:
         encoder.clear_buffer(lists, head, 4 * self._marks * pixels)
 
     def _begin_kernel(self) -> ComputeKernel:
-        if self._begin is None:
-            self._begin = ComputeKernel(self.device, "techniques/eikonal/shaders/begin")
-        return self._begin
+        return self._pipelines.kernel("techniques/eikonal/shaders/begin")
 
     def _route_kernel(self, has_meshes: bool) -> ComputeKernel:
-        if has_meshes not in self._kernels:
-            constants = {"HAS_MESHES": float(has_meshes)}
-            self._kernels[has_meshes] = ComputeKernel(
-                self.device, "techniques/eikonal/shaders/route", constants=constants
-            )
-        return self._kernels[has_meshes]
+        return self._pipelines.kernel("techniques/eikonal/shaders/route", {"HAS_MESHES": float(has_meshes)})

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from pellucid.errors import SceneError
-from pellucid.gpu import ComputeKernel, Device
+from pellucid.gpu import ComputeKernel, Device, Pipelines
 from pellucid.scene.quality import Quality
 from pellucid.scene.refractive_volume import RefractiveVolume
 from pellucid.techniques.eikonal.layouts import TraceParams, TraceRay
@@ -139,10 +139,7 @@ def _kernel(device: Device, prepared: Prepared, quality: Quality, mode: str | No
         name, constants = "trace", {"SHARP": float(prepared.sharp), **constants}
     else:
         name, constants = "trace_crystal", {**constants, **crystal_constants(prepared)}
-    key = (name, *constants.values())
-    if key not in device.cache:
-        device.cache[key] = ComputeKernel(device, f"techniques/eikonal/shaders/{name}", constants=constants)
-    return device.cache[key]
+    return Pipelines(device, shared=True).kernel(f"techniques/eikonal/shaders/{name}", constants)
 
 
 def _run(

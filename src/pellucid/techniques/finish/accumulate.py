@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from pellucid.gpu import ComputeKernel, Device
+from pellucid.gpu import Device, Pipelines
 
 
 class Accumulator:
@@ -16,10 +16,7 @@ class Accumulator:
         self.device = device
         self.size = size
         self.count = 0
-        key = "accumulate"
-        if key not in device.cache:
-            device.cache[key] = ComputeKernel(device, "techniques/finish/shaders/accumulate", nearest=("picture",))
-        self._kernel: ComputeKernel = device.cache[key]
+        self._kernel = Pipelines(device, ("picture",), shared=True).kernel("techniques/finish/shaders/accumulate")
         self._sum = device.buffer(16 * size[0] * size[1], "storage", "sum of samples")
 
     def add(self, encoder: Any, picture: Any, timer: Any = None) -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pellucid.gpu import Device, RenderPass
+from pellucid.gpu import Device, Pipelines
 
 if TYPE_CHECKING:
     from pellucid.scene import Mesh
@@ -46,15 +46,10 @@ class SceneCube:
     ) -> None:
         """Look around from a point of the world, in the middle of a mesh."""
         self._drawn = (mesh, np.array(center_ws))
-        constants = surroundings.shading_constants
-        key = ("relief cube", *constants.values())
-        if key not in self.device.cache:
-            module = "techniques/relief/shaders/cube"
-            self.device.cache[key] = RenderPass(self.device, module, targets=(FORMAT,), constants=constants)
+        pipelines = Pipelines(self.device, shared=True)
+        cube = pipelines.draw("techniques/relief/shaders/cube", surroundings.shading_constants, targets=(FORMAT,))
         for face, (buffer, view) in enumerate(zip(self._faces, self._layers, strict=True)):
             self.device.write(buffer, np.array([*center_ws, face, SIDE, 0, 0, 0], np.float32))
             bound = {**surroundings.bindings, "cube_face": buffer}
             clear = [(0.0, 0.0, 0.0, 0.0)]
-            self.device.cache[key].run(
-                encoder, color=[view], clear=clear, bindings=bound, timer=timer, label="relief cube"
-            )
+            cube.run(encoder, color=[view], clear=clear, bindings=bound, timer=timer, label="relief cube")

@@ -8,14 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellucid.fields.horizon import horizon_map
-from pellucid.gpu.kernel import ComputeKernel
-from pellucid.gpu.modules import declared
 from pellucid.scene import DirectionalLight
 from pellucid.scene.relief_quality import SHADOWS, ReliefQuality
-from pellucid.techniques.relief.layouts import NEAREST, ReliefBeam, ReliefParams, ReliefPlane
+from pellucid.techniques.relief.layouts import ReliefBeam, ReliefParams, ReliefPlane
 
 if TYPE_CHECKING:
-    from pellucid.gpu import Device
+    from pellucid.gpu import Device, Pipelines
     from pellucid.techniques.relief.frames import Hull
 
 SHADERS = "techniques/relief/shaders/"
@@ -74,23 +72,6 @@ def light_constants(quality: ReliefQuality, lamps: Sequence[object], mapped: int
     }
 
 
-class LightPasses:
-    """The kernels of light maps, one set for each choice of shadows and occlusion."""
-
-    def __init__(self, device: Device) -> None:
-        self.device = device
-        self._kernels: dict[tuple[Any, ...], ComputeKernel] = {}
-
-    def run(self, name: str, constants: Mapping[str, float], groups: tuple[int, int, int], bound: Any) -> None:
-        """Run the kernel of a file; constants that it does not declare are left out."""
-        module = SHADERS + name
-        used = declared(module, constants)
-        key = (name, *used.items())
-        if key not in self._kernels:
-            self._kernels[key] = ComputeKernel(self.device, module, constants=used, nearest=NEAREST)
-        self._kernels[key].run(groups, bound)
-
-
 class LightMaps:
     """Light maps of one relief: a layer a lamp, each as large as the map of heights.
 
@@ -100,15 +81,15 @@ class LightMaps:
     runs : how often they were computed.
     """
 
-    def __init__(self, passes: LightPasses) -> None:
-        self.passes = passes
+    def __init__(self, device: Device, pipelines: Pipelines) -> None:
+        self.device, self.pipelines = device, pipelines
         self.runs = 0
         self.nbytes = 0
         self._size: tuple[int, int, int, bool] | None = None
         self._state: Any = None
         self._planes: list[Any] = []
         self._horizon: tuple[Any, Any, Any] | None = None
-        self._params = passes.device.buffer(ReliefParams.itemsize, "uniform", "relief of light maps")
+        self._params = device.buffer(ReliefParams.itemsize, "uniform", "relief of light maps")
         self._allocate((1, 1, 1, False))
 
     @property
@@ -144,11 +125,11 @@ class LightMaps:
         if params["tiling"]:
             # All tiles share one map: that of a tile in the midst of many.
             endless["clip_low"], endless["clip_high"] = -1e9, 1e9
-        self.passes.device.write(self._params, endless.reshape(1))
+        self.device.write(self._params, endless.reshape(1))
         width, height = (-(-side // GROUP) for side in texels)
         bound = {**bound, "relief": self._params}
         own = {"light_map_out": self._light_view, "plane": self._planes[0]}
-        self.passes.run("light_map", constants, (width, height, lights), {**bound, **own})
+        self._run("light_map", constants, (width, height, lights), {**bound, **own})
         own = {
             "caustic_beams": self._beams, "caustic_sums": self._sums, "caustic_map_out": self._caustic_view
         }  # fmt: skip
@@ -156,11 +137,14 @@ class LightMaps:
             of_light = self._planes[light * len(parts) : (light + 1) * len(parts)]
             for part in of_light:
                 for name in ("caustic_refract", "caustic_splat"):
-                    self.passes.run(name, constants, (width, height, 1), {**bound, **own, "plane": part})
-            self.passes.run("caustic_resolve", constants, (width, height, 1), {**bound, **own, "plane": of_light[0]})
+                    self._run(name, constants, (width, height, 1), {**bound, **own, "plane": part})
+            self._run("caustic_resolve", constants, (width, height, 1), {**bound, **own, "plane": of_light[0]})
         self._state = state
         self.runs += 1
         return True
+
+    def _run(self, name: str, constants: Mapping[str, float], groups: tuple[int, int, int], bound: Any) -> None:
+        self.pipelines.kernel(SHADERS + name, constants).run(groups, bound)
 
     def horizon(self, heights: np.ndarray, tile_m: tuple[float, float], tiling: bool, kept: Any) -> Any:
         """View of the horizon map of the solid layer; `kept` is what its heights came from, told apart by identity."""
@@ -168,10 +152,8 @@ class LightMaps:
         if self._horizon is None or self._horizon[0] is not kept or self._horizon[1] != state:
             rows, columns = heights.shape
             stack = horizon_map(heights, (tile_m[0] / columns, tile_m[1] / rows), tiling)
-            texture = self.passes.device.texture(
-                size=(columns, rows), format="r16float", layers=len(stack), label="horizons"
-            )
-            self.passes.device.write_texture(texture, stack[..., None].astype(np.float16))
+            texture = self.device.texture(size=(columns, rows), format="r16float", layers=len(stack), label="horizons")
+            self.device.write_texture(texture, stack[..., None].astype(np.float16))
             self._horizon = kept, state, texture.create_view(dimension="2d-array")
         return self._horizon[2]
 
@@ -184,7 +166,7 @@ class LightMaps:
         self._light_view = self.light_map.create_view(dimension="2d-array")
         self._caustic_view = self.caustic_map.create_view(dimension="2d-array")
         texels = width * height if caustics else 1
-        device = self.passes.device
+        device = self.device
         self._beams = device.buffer(ReliefBeam.itemsize * texels, label="caustic beams")
         self._sums = device.buffer(np.zeros(3 * texels, np.uint32), label="caustic sums")
         self.nbytes = 8 * layers * (width * height + texels) + (ReliefBeam.itemsize + 12) * texels
@@ -192,7 +174,7 @@ class LightMaps:
 
     def _texture(self, size: tuple[int, int], layers: int, label: str) -> Any:
         usage = ("sample", "storage")
-        return self.passes.device.texture(size=size, format=MAP_FORMAT, layers=layers, usage=usage, label=label)
+        return self.device.texture(size=size, format=MAP_FORMAT, layers=layers, usage=usage, label=label)
 
     def _write_planes(self, plane: np.ndarray, lights: int, parts: list[tuple[float, tuple[float, ...]]]) -> None:
         records = np.repeat(plane.reshape(1), lights * len(parts))
@@ -200,9 +182,9 @@ class LightMaps:
         records["n_layer"] = np.tile([n for n, _ in parts], lights)
         records["channels"] = np.tile([channels for _, channels in parts], (lights, 1))
         while len(self._planes) < len(records):
-            self._planes.append(self.passes.device.buffer(ReliefPlane.itemsize, "uniform", "relief plane"))
+            self._planes.append(self.device.buffer(ReliefPlane.itemsize, "uniform", "relief plane"))
         for buffer, record in zip(self._planes, records, strict=False):
-            self.passes.device.write(buffer, record.reshape(1))
+            self.device.write(buffer, record.reshape(1))
 
 
 def _channels(params: np.ndarray) -> list[tuple[float, tuple[float, ...]]]:

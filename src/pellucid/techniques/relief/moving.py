@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellucid.fields.waves import Ripples
-from pellucid.gpu.kernel import ComputeKernel
+from pellucid.gpu import ComputeKernel, Pipelines
 from pellucid.simulation import RippleSimulation
 from pellucid.techniques.relief.layouts import ReliefMoving
 
@@ -105,11 +105,7 @@ class MovingMaps:
         self._kernel(name).run(_groups(over.width, over.height), given, encoder)
 
     def _kernel(self, name: str) -> ComputeKernel:
-        key = ("relief moving", name)
-        if key not in self.device.cache:
-            self.device.cache[key] = ComputeKernel(self.device, SHADERS + name, nearest=NEAREST)
-        kernel: ComputeKernel = self.device.cache[key]
-        return kernel
+        return Pipelines(self.device, NEAREST, shared=True).kernel(SHADERS + name)
 
 
 class _Source:

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pellucid.gpu import Device, RenderPass
-from pellucid.gpu.modules import declared
+from pellucid.gpu import Device, Pipelines, RenderPass
 from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT, Targets
 from pellucid.scene.placement import placement_matrix
 from pellucid.scene.relief_quality import REFLECTIONS, REFRACTIONS, SEARCHES, SHOWS, ReliefQuality, quality_of
@@ -17,7 +16,7 @@ from pellucid.surroundings.diffuse import diffuse_tables
 from pellucid.techniques.relief.cube import SceneCube
 from pellucid.techniques.relief.frames import Hull, vertex_texels
 from pellucid.techniques.relief.layouts import NEAREST, ReliefParams
-from pellucid.techniques.relief.light import LightMaps, LightPasses, light_constants, mapped_lights, plane_of
+from pellucid.techniques.relief.light import LightMaps, light_constants, mapped_lights, plane_of
 from pellucid.techniques.relief.moving import MovingMaps, device_moves
 from pellucid.techniques.relief.prepare import (
     MARGIN,
@@ -102,17 +101,16 @@ class ReliefTechnique:
 
     Attributes
     ----------
-    bodies : what was prepared last.
+    bodies : what was prepared last. pipelines : one for each choice that a relief was drawn with.
     """
 
     def __init__(self, device: Device) -> None:
         self.device = device
         self.bodies: list[Body] = []
-        self._passes: dict[Any, RenderPass] = {}
+        self.pipelines = Pipelines(device, NEAREST)
         self._hits: Any = None
         self._cubes: dict[int, SceneCube] = {}
         self._nothing = _absent(device)
-        self._light_passes = LightPasses(device)
         self._light_maps: list[LightMaps] = []
         self._stand_ins: list[tuple[ReliefSurface, Mesh]] = []
 
@@ -172,7 +170,7 @@ class ReliefTechnique:
         tile. Elsewhere every fragment sends rays.
         """
         while len(self._light_maps) < len(self.bodies):
-            self._light_maps.append(LightMaps(self._light_passes))
+            self._light_maps.append(LightMaps(self.device, self.pipelines))
         for body, light_maps in zip(self.bodies, self._light_maps, strict=False):
             self._illuminate(body, light_maps, lights, surroundings)
 
@@ -318,15 +316,10 @@ class ReliefTechnique:
         return texture
 
     def _pass(self, name: str, constants: dict[str, float]) -> RenderPass:
-        module = f"techniques/relief/shaders/{name}"
-        used = declared(module, constants)
-        key = (name, *used.items())
-        if key not in self._passes:
-            options: dict[str, Any] = {"targets": (COLOR_FORMAT,)}
-            if name == "find":
-                options = {"targets": (HIT_FORMAT,), "depth": DEPTH_FORMAT, "depth_compare": "greater", "cull": "back"}
-            self._passes[key] = RenderPass(self.device, module, constants=used, nearest=NEAREST, **options)
-        return self._passes[key]
+        options: dict[str, Any] = {"targets": (COLOR_FORMAT,)}
+        if name == "find":
+            options = {"targets": (HIT_FORMAT,), "depth": DEPTH_FORMAT, "depth_compare": "greater", "cull": "back"}
+        return self.pipelines.draw(f"techniques/relief/shaders/{name}", constants, **options)
 
     def _hit_target(self, size: tuple[int, int]) -> Any:
         if self._hits is None or (self._hits.width, self._hits.height) != size:

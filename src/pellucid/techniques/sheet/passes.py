@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellucid.fields.waves import WaveSource
-from pellucid.gpu import Device, RenderPass
-from pellucid.gpu.modules import declared
+from pellucid.gpu import Device, Pipelines
 from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT, Targets
 from pellucid.optics import fitted_factor, opposite_factor
 from pellucid.scene.placement import placement_matrix
@@ -25,6 +24,7 @@ if TYPE_CHECKING:
     from pellucid.surroundings import Surroundings
 
 MODULE = "techniques/sheet/shaders/sheet"
+OPTIONS: dict[str, Any] = {"targets": (COLOR_FORMAT,), "depth": DEPTH_FORMAT, "depth_compare": "greater"}
 MOST_TRIED = 65536  # vertices whose deviation is looked at
 
 
@@ -75,13 +75,13 @@ class SheetTechnique:
 
     Attributes
     ----------
-    bodies : what was prepared last.
+    bodies : what was prepared last. pipelines : one for each choice that a sheet was drawn with.
     """
 
     def __init__(self, device: Device) -> None:
         self.device = device
         self.bodies: list[Body] = []
-        self._passes: dict[Any, RenderPass] = {}
+        self.pipelines = Pipelines(device)
         self._pictures: list[tuple[np.ndarray, Any]] = []
         self._absent = device.texture(size=(1, 1), format="rgba16float", label="no sphere map")
 
@@ -118,7 +118,7 @@ class SheetTechnique:
         for body in self.bodies:
             write_limits(body, camera)
             self.device.write(body.bindings["sheet"], body.params.reshape(1))
-            self._pass(body.constants(surroundings)).run(
+            self.pipelines.draw(MODULE, body.constants(surroundings), **OPTIONS).run(
                 encoder,
                 color=[targets.color_view],
                 depth=targets.depth_view,
@@ -159,20 +159,6 @@ class SheetTechnique:
                 self.device.write_texture(kept, level, mip=mip)
             self._pictures.append((array, kept))
         return kept
-
-    def _pass(self, constants: dict[str, float]) -> RenderPass:
-        used = declared(MODULE, constants)
-        key = tuple(used.items())
-        if key not in self._passes:
-            self._passes[key] = RenderPass(
-                self.device,
-                MODULE,
-                targets=(COLOR_FORMAT,),
-                depth=DEPTH_FORMAT,
-                depth_compare="greater",
-                constants=used,
-            )
-        return self._passes[key]
 
 
 def write_parameters(body: Body) -> None:
