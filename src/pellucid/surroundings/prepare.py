@@ -95,7 +95,13 @@ class Surroundings:
     @property
     def shading_constants(self) -> dict[str, float]:
         """Override constants of every shader that shades meshes; they tell kinds of lamps, not where one is."""
-        own = {"CAUSTICS": float(self.caustics.active), "SUBMERGED": float(self.submersion.active)}
+        regions = self.submersion.regions
+        own = {
+            "CAUSTICS": float(self.caustics.active),
+            "SUBMERGED": float(self.submersion.active),
+            "MAPS_ALONG": float(all(region.along for region in regions)),
+            "ASTRAY": float(any(any(region.scattering_per_m) for region in regions)),
+        }
         return {**own, "LAMPS_OCCLUDED": float(self.triangle_count > 0), **self._lamp_kinds}
 
     @property

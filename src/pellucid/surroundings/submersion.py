@@ -56,6 +56,7 @@ class WaterRegion:
     reach_m : how far below the highest wave meshes are told apart by the maps.
     slopes : (x, z) of the camera of each map, horizontal way over depth, towards the light.
     shadows : by map, whether meshes throw any.
+    along : whether all those cameras look along the light that a level surface refracts.
     """
 
     level_m: float
@@ -69,6 +70,7 @@ class WaterRegion:
     reach_m: float = 100.0
     slopes: tuple[tuple[float, float], ...] = ()
     shadows: tuple[bool, ...] = ()
+    along: bool = False
 
 
 @dataclass

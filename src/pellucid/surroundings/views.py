@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 SHADERS = "surroundings/shaders"
 CLEAR = (0.0, 0.0, 0.0, 0.0)
 FARTHEST_M = 1e30
-APART_FORMAT = "rgba16float"
+APART_FORMAT = "rgba32uint"  # see shaders/shading_apart.wgsl
 
 Box = tuple[tuple[float, float, float], tuple[float, float, float]]  # lower and upper corner, metres
 
@@ -75,7 +75,7 @@ class SceneView:
     def __init__(self, device: Device, format: str = COLOR_FORMAT) -> None:
         self.device = device
         self.format = format
-        self._pipelines = Pipelines(device, ("shaded_rest", "shaded_depth"), shared=True)
+        self._pipelines = Pipelines(device, ("shaded_rest",), shared=True)
         self._triangles: Any = None
         self._apart: tuple[Any, Any] | None = None
         self._frame: Any = None
@@ -91,7 +91,7 @@ class SceneView:
         """Bytes of GPU memory held for shading."""
         kept = [] if self._triangles is None else [(self._triangles, 4)]
         if self._apart is not None:
-            kept += [(self._apart[0], 16 if self.format == COLOR_FORMAT else 8), (self._apart[1], 8)]
+            kept += [(self._apart[0], 16 if self.format == COLOR_FORMAT else 8), (self._apart[1], 16)]
         return sum(texture.width * texture.height * size for texture, size in kept)
 
     def draw(
@@ -152,10 +152,11 @@ class SceneView:
         self._seen, self._lit = seen, lit
         # Where nothing over the surface is shown, what only waves cover may count as water.
         if waters and shown.clip is not None and surroundings.sun_may_be_apart:
-            self._shade_apart(encoder, color, depth, surroundings, bindings, seen, timer, label)
+            anew = self._shade_apart(encoder, color, depth, surroundings, bindings, seen, kept, timer, label)
         else:
             self._shade(encoder, color, depth, surroundings, bindings, waters, timer, label)
-        if sky:
+            anew = True
+        if sky and anew:
             self.draw_sky(encoder, color, depth, bindings, timer, f"{label} sky")
 
     def _shade(
@@ -190,13 +191,15 @@ class SceneView:
         surroundings: Surroundings,
         bindings: dict[str, Any],
         seen: tuple[Any, ...],
+        kept: bool,
         timer: PassTimer | None,
         label: str,
-    ) -> None:
-        """Only light that waves focus is added anew while nothing but waves moves."""
+    ) -> bool:
+        """Only light that waves focus is added anew while nothing but waves moves; tells whether more was."""
         rest, sun = self._apart_targets((self._triangles.width, self._triangles.height))
         rested = (seen, surroundings.submersion.settled)
-        if rested != self._rested:
+        anew = not kept or rested != self._rested
+        if anew:
             options: dict[str, Any] = {"targets": (self.format, APART_FORMAT), "depth_compare": "less"}
             constants = {**surroundings.shading_constants, "SUN_APART": 1.0}
             self._pass("shading_apart", constants, **options).run(
@@ -209,14 +212,16 @@ class SceneView:
                 label=f"{label} shading",
             )
             self._rested = rested
-        self._pass("sunlit", {}, depth=None).run(
+        self._pass("sunlit", surroundings.shading_constants, vertex="vs_sunlit", depth_compare="less").run(
             encoder,
             color=[color],
-            clear=[CLEAR],
-            bindings={**bindings, "shaded_rest": rest, "shaded_sun": sun, "shaded_depth": depth},
+            depth=depth,
+            clear=[CLEAR] if anew else None,
+            bindings={**bindings, "shaded_rest": rest, "shaded_sun": sun},
             timer=timer,
             label=f"{label} sun",
         )
+        return anew
 
     def _apart_targets(self, size: tuple[int, int]) -> tuple[Any, Any]:
         """Radiance but for that of the sun through the water, and that for a sun that nothing takes from."""

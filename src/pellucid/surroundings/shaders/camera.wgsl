@@ -20,6 +20,14 @@ fn camera_ray(pixel: vec2f) -> CameraRay {
     return CameraRay(origin, normalize(frame.camera_forward + select(across, vec3f(0.0), parallel)));
 }
 
+// Point that a pixel shows at a depth along the view axis, metres
+fn camera_point(pixel: vec2f, depth_m: f32) -> vec3f {
+    let ndc = 2.0 * (pixel + frame.jitter) / frame.size - 1.0;
+    let across = ndc.x * frame.half_extent.x * frame.camera_right - ndc.y * frame.half_extent.y * frame.camera_up;
+    let widened = across * select(depth_m, 1.0, camera_is_orthographic());
+    return frame.camera_position + depth_m * frame.camera_forward + widened;
+}
+
 // Value of the depth buffer at a point: near / depth, or linear from 1 (near) to 0 (far) when orthographic
 fn depth_of(p_ws: vec3f) -> f32 {
     let clip = frame.clip_from_world * vec4f(p_ws, 1.0);

@@ -4,7 +4,8 @@
 
 struct ShadedApart {
     @location(0) rest: vec4f,  // all other light; the share of it that came from elsewhere, and is not the surface's own
-    @location(1) sun: vec4f,  // what a surface sends for the share of the lamp that comes to it; its shadow
+    // What a surface sends for the share of the lamp that comes to it, and its shadow, in halves; its depth, metres.
+    @location(1) sun: vec4u,
 }
 
 @group(0) @binding(0) var visible_triangles: texture_2d<u32>;
@@ -20,7 +21,10 @@ fn fs_main(@builtin(position) position: vec4f) -> ShadedApart {
     let shaded = shade_parts(surface, triangle, view_ws);
     let own = materials[surface.material].emission;
     let lit = 1.0 - saturate(dot(own, vec3f(1.0)) / max(dot(shaded.radiance, vec3f(1.0)), 1e-30));
-    return ShadedApart(vec4f(shaded.radiance, lit), vec4f(min(shaded.sun, vec3f(SHADED_MAX)), shaded.sun_seen));
+    let sun = vec4f(min(shaded.sun, vec3f(SHADED_MAX)), shaded.sun_seen);
+    let depth_m = dot(surface.p_ws - frame.camera_position, frame.camera_forward);
+    let kept = vec4u(pack2x16float(sun.rg), pack2x16float(sun.ba), bitcast<u32>(depth_m), 0u);
+    return ShadedApart(vec4f(shaded.radiance, lit), kept);
 }
 
 const SHADED_MAX = 60000.0;  // below the largest half float

@@ -2,9 +2,12 @@
 //!import optics/fresnel
 //!import surroundings/shaders/lights
 //!import surroundings/shaders/shadow
+//!import surroundings/shaders/submerged_sky
 //!import surroundings/shaders/submersion
 
 override SUN_APART: bool = false;  // leave out what the first map of a water tells, see sunlit.wgsl
+override MAPS_ALONG: bool = false; // whether a point is seen on all maps of its water where its light has come in
+override ASTRAY: bool = true;      // whether any water scatters light
 
 // Unit direction towards a light, in the water; `index` is that of the water over that above
 fn submerged_direction(to_light: vec3f, index: f32) -> vec3f {
@@ -22,21 +25,18 @@ fn sample_submerged_sun(light: u32, p_ws: vec3f, n_ws: vec3f, at: Submerged) -> 
         return LightSample(direction, vec3f(0.0));
     }
     let irradiance = lights[light].power * (towards.y / direction.y);
-    return LightSample(direction, irradiance * submerged_beam(light, p_ws, n_ws, direction, at));
+    return LightSample(direction, irradiance * submerged_flux(light, p_ws, n_ws, direction, at));
 }
 
-// What is left of the flux that falls on the surface above a point. In pictures that keep the sun apart (sunlit.wgsl) it
-// is all for the first map.
-fn submerged_beam(light: u32, p_ws: vec3f, n_ws: vec3f, direction: vec3f, at: Submerged) -> vec3f {
+// What is left of the flux that falls on the surface above a point
+fn submerged_flux(light: u32, p_ws: vec3f, n_ws: vec3f, direction: vec3f, at: Submerged) -> vec3f {
+    if SUN_APART {
+        return vec3f(1.0);  // there is one map, and all its light is added later
+    }
     let layer = lights[light].water_layer;
-    if SUN_APART && layer == 0 {
-        return vec3f(1.0);
-    }
-    var seen = 1.0;
-    if layer >= 0 {
-        seen = submerged_map_visibility(light, p_ws, n_ws, at.water);
-    }
-    return submerged_share(light, p_ws, direction, at.water, seen);
+    let seen = submerged_map_visibility(light, p_ws, n_ws, at.water);
+    let beam = submerged_beam(lights[light].direction, direction, at.water);
+    return submerged_share(beam, layer, p_ws, at.water, seen);
 }
 
 // Shadow of meshes in the map of a light; past walls, if there are any, in light that has not come in through the surface
@@ -63,37 +63,48 @@ fn submerged_mapped(uv: vec2f) -> bool {
     return all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0));
 }
 
-// Its share that comes through, and loss. The beam loses all that is absorbed or scattered. What is scattered by less than
-// a right angle comes too [gordon1973], from a place as wide as it goes astray: the mean of the map there, of four points.
-fn submerged_share(light: u32, p_ws: vec3f, direction: vec3f, water: u32, seen: f32) -> vec3f {
-    let level_m = submersion.level[water].x;
+// What light of a lamp far away is in one water, wherever it goes
+struct SubmergedBeam {
+    passed: vec3f,  // share that the level surface lets through
+    aside: vec2f,   // horizontal way over depth, towards the lamp
+    longer: f32,    // way over depth
+    astray: vec2f,  // how wide it goes astray, over its way, in sizes of the maps
+}
+
+fn submerged_beam(to_light: vec3f, direction: vec3f, water: u32) -> SubmergedBeam {
     let index = submersion.index[water].rgb;
-    let towards = lights[light].direction;
-    let scattering = submersion.scattering[water];
-    let extinction = submersion.absorption[water].rgb + scattering.rgb;
-    let attenuation = submersion.absorption[water].rgb + 0.5 * (1.0 - scattering.a) * scattering.rgb;
-    var share = 1.0 - vec3f(
-        fresnel_dielectric(towards.y, 1.0, index.r),
-        fresnel_dielectric(towards.y, 1.0, index.g),
-        fresnel_dielectric(towards.y, 1.0, index.b),
+    let passed = 1.0 - vec3f(
+        fresnel_dielectric(to_light.y, 1.0, index.r),
+        fresnel_dielectric(to_light.y, 1.0, index.g),
+        fresnel_dielectric(to_light.y, 1.0, index.b),
     );
-    let entry = submerged_entry(p_ws, level_m, direction.xz / direction.y);
-    let path_m = max(level_m + submerged_wave(water, entry) - p_ws.y, 0.0) / direction.y;
-    let astray_m = SUBMERGED_ASTRAY * path_m * sqrt(max(1.0 - scattering.a, 0.0));
-    var soft = share;
-    let layer = lights[light].water_layer;
-    if layer >= 0 {
-        let slope = submersion.slope[water * MAX_WATER_LIGHTS + u32(layer)].xy;
-        let uv = submerged_uv(water, submerged_entry(p_ws, level_m, slope));
-        if submerged_mapped(uv) {
-            let map = u32(submersion.level[water].z) + u32(layer);
-            share = textureSampleLevel(submerged_light, caustic_sampler, uv, map, 0.0).rgb;
-            soft = submerged_mean(uv, map, astray_m / (submersion.bounds[water].zw - submersion.bounds[water].xy));
-        }
-        share *= seen;
+    let size_m = submersion.bounds[water].zw - submersion.bounds[water].xy;
+    let astray = SUBMERGED_ASTRAY * sqrt(max(1.0 - submersion.scattering[water].a, 0.0));
+    return SubmergedBeam(passed, direction.xz / direction.y, 1.0 / direction.y, astray / size_m);
+}
+
+// Its share that comes through, and loss; `layer` is that of its map among the maps of the water, -1 for none. The beam
+// loses all that is absorbed or scattered. What is scattered by less than a right angle comes too [gordon1973], from a
+// place as wide as it goes astray: the mean of the map there, of four points.
+fn submerged_share(beam: SubmergedBeam, layer: i32, p_ws: vec3f, water: u32, seen: f32) -> vec3f {
+    let level = submersion.level[water];
+    let map = u32(level.z) + u32(max(layer, 0));
+    let slope = submersion.slope[water * MAX_WATER_LIGHTS + u32(max(layer, 0))].xy;
+    let uv = submerged_uv(water, submerged_entry(p_ws, level.x, select(slope, beam.aside, layer < 0)));
+    let found = textureSampleLevel(submerged_light, caustic_sampler, uv, map, 0.0);
+    var wave_m = found.a;
+    if !MAPS_ALONG {
+        wave_m = submerged_wave(water, submerged_entry(p_ws, level.x, beam.aside));
     }
-    let direct = exp(-extinction * path_m);
-    return share * direct + soft * (exp(-attenuation * path_m) - direct);
+    let path_m = max(level.x + wave_m - p_ws.y, 0.0) * beam.longer;
+    let mapped = layer >= 0 && submerged_mapped(uv);
+    let share = select(beam.passed, found.rgb, mapped) * select(seen, 1.0, layer < 0);
+    let direct = exp(-(submersion.absorption[water].rgb + submersion.scattering[water].rgb) * path_m);
+    if !ASTRAY {
+        return share * direct;
+    }
+    let soft = select(beam.passed, submerged_mean(uv, map, beam.astray * path_m), mapped);
+    return share * direct + soft * (exp(-submerged_attenuation(water) * path_m) - direct);
 }
 
 const SUBMERGED_ASTRAY = 0.7;  // of the way, times the root of 1 - g: angles are about the root of 2 (1 - g), over the way

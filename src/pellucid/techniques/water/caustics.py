@@ -291,6 +291,7 @@ def region_of(
         reach_m=max(reach, 1e-3),
         slopes=tuple(camera_slope(lamp, n[1], quality) for lamp in lamps),
         shadows=tuple(quality.shadows and lamp.cast_shadow for lamp in lamps),
+        along=quality.caustic_camera == "refracted" and n[1] >= 1.0,
     )
 
 
