@@ -13,7 +13,7 @@ MATERIAL_CASTS_SHADOW = 16  # shifted left by the layer of the shadow map
 DIFFUSE_ENTRIES = 32  # rows of a table of light that goes diffusely through an interface, see diffuse.py
 
 MAX_WATERS = 4  # of which what stands in them is lit through their surface
-MAX_WATER_LIGHTS = 4  # directional lights with caustics and shadows in each of them
+MAX_WATER_LIGHTS = 4  # lights with caustics in each of them
 
 LIGHT_DIRECTIONAL = 0
 LIGHT_POINT = 1
@@ -94,7 +94,7 @@ Light = struct(
         ("edge_u", "vec3f"),
         ("radius", "f32"),  # tangent of the angle of a directional light; of the disc as large as an area light, m
         ("edge_v", "vec3f"),
-        ("water_layer", "i32"),  # among the maps of each water, of a directional light; -1 for none
+        ("water_layer", "i32"),  # among the maps of each water, directional lights first; -1 for none
         ("shadow_from_world", "mat4x4f"),
     ]
 )
@@ -166,7 +166,7 @@ SubmersionParams = struct(
         (
             "slope",
             ("vec4f", MAX_WATERS * MAX_WATER_LIGHTS),
-        ),  # of the camera of each map, horizontal way over depth; 1 for shadows
+        ),  # of the camera of each map, horizontal way over depth; 1 for shadows; 1 for the map of a lamp nearby
         (
             "down",
             ("vec4f", MAX_WATERS * DIFFUSE_ENTRIES),

@@ -44,7 +44,8 @@ def light_records(lights: Sequence[object], corners: Sequence[np.ndarray]) -> tu
         elif isinstance(light, AreaLight):
             _write_area(record, light)
     high = np.flatnonzero((records["kind"] == LIGHT_DIRECTIONAL) & (records["direction"][:, 1] > 0.0))
-    for layer, light in enumerate(high[:MAX_WATER_LIGHTS]):
+    near = np.flatnonzero(records["kind"][: len(lights)] != LIGHT_DIRECTIONAL)
+    for layer, light in enumerate([*high, *near][:MAX_WATER_LIGHTS]):
         records["water_layer"][light] = layer
     return records, casters
 
@@ -84,6 +85,11 @@ def shadow_order(records: np.ndarray) -> list[int]:
     """Index of the light of each shadow map, in the order of their layers."""
     mapped = np.flatnonzero((records["kind"] == LIGHT_DIRECTIONAL) & (records["shadow_layer"] >= 0))
     return [int(i) for i in mapped[np.argsort(records["shadow_layer"][mapped])]]
+
+
+def far_over_water(records: np.ndarray) -> int:
+    """How many directional lights have maps in waters."""
+    return int(((records["kind"] == LIGHT_DIRECTIONAL) & (records["water_layer"] >= 0)).sum())
 
 
 def lamp_constants(records: np.ndarray) -> dict[str, float]:

@@ -66,6 +66,7 @@ class Surroundings:
         self._shown = 0
         self._casters: list[list[bool]] = []
         self._lamp_kinds = lights.lamp_constants(np.zeros(0, Light))
+        self._far_lamps = 0
         self.caustics = CausticMaps(device, self._resources)
         self.submersion = Submersion(device, self._resources)
         self._viewed: tuple[Camera, tuple[int, int]] | None = None
@@ -108,7 +109,9 @@ class Surroundings:
     def sun_may_be_apart(self) -> bool:
         """Whether all that waves change of the light on meshes is one map, of one lamp and one water."""
         regions = self.submersion.regions
-        return len(regions) == 1 and len(regions[0].slopes) == 1 and not self.caustics.active
+        if len(regions) != 1 or self.caustics.active:
+            return False
+        return self._far_lamps == 1 and bool(regions[0].slopes) and not any(regions[0].near)
 
     def state(self, waters: bool = True) -> tuple[Any, ...]:
         """What pictures of the meshes depend on, but for the camera: equal to an earlier one while they are the same.
@@ -221,6 +224,7 @@ class Surroundings:
         self._store("lights", records)
         self.shadow_lights = lights.shadow_order(records)
         self._lamp_kinds = lights.lamp_constants(records[: len(lamps)])
+        self._far_lamps = lights.far_over_water(records)
         self._prepare_shadows(len(self._casters))
         return True
 

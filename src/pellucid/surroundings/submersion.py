@@ -6,13 +6,14 @@ the light that comes through their surfaces. `shaders/shade.wgsl` then lights wh
     sun:   E = E_0 l.y / l'.y  map  exp(-(a + b) s)     across the refracted direction l', s metres through the water,
            and what is scattered forward on the way, without the sharpness of the map;
     sky:   through Snell's window, weakened by the depth, and thrown back by the surface; see submerged_sky.wgsl;
-    lamps: through the level surface, each along its own bent way; see submerged_lamp.wgsl.
+    lamps: through the level surface, each along its own bent way, times a map of its own; see submerged_lamp.wgsl.
 
 Radiance in water is n^2 times that in air; it is divided again where the view ray leaves the water. Without water an
 override constant takes all of it out of the shaders, and pictures are the same to the last bit.
 
 The maps lie on the level of each water, under a camera that looks along the light: a point p at the depth z is seen at
-p.xz + slope z. So a map covers the water exactly, and under a flat surface it is the same at every depth. Red, green
+p.xz + slope z; for a lamp nearby it is seen where the bent way to it crosses the level. So a map covers the water
+exactly, and under a flat surface it is the same at every depth. Red, green
 and blue are the flux that comes to a place over that which falls on a level surface; alpha is the surface's height.
 """
 
@@ -57,6 +58,7 @@ class WaterRegion:
     slopes : (x, z) of the camera of each map, horizontal way over depth, towards the light.
     shadows : by map, whether meshes throw any.
     along : whether all those cameras look along the light that a level surface refracts.
+    near : by map, whether it is that of a lamp nearby, over this water.
     """
 
     level_m: float
@@ -71,6 +73,7 @@ class WaterRegion:
     slopes: tuple[tuple[float, float], ...] = ()
     shadows: tuple[bool, ...] = ()
     along: bool = False
+    near: tuple[bool, ...] = ()
 
 
 @dataclass
@@ -184,6 +187,7 @@ class Submersion:
         for light, slope in enumerate(region.slopes[:MAX_WATER_LIGHTS]):
             p["slope"][k * MAX_WATER_LIGHTS + light, :2] = slope
             p["slope"][k * MAX_WATER_LIGHTS + light, 2] = light < len(region.shadows) and region.shadows[light]
+            p["slope"][k * MAX_WATER_LIGHTS + light, 3] = light < len(region.near) and region.near[light]
         down, back = diffuse_tables(1.0, region.n)
         rows = slice(k * DIFFUSE_ENTRIES, (k + 1) * DIFFUSE_ENTRIES)
         p["down"][rows], p["back"][rows] = down / np.maximum(down[-1], 1e-9), back

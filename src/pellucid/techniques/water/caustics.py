@@ -1,8 +1,9 @@
-"""Light of lamps far away that comes through the surface of water: shadows, and caustics on what lies below.
+"""Light of lamps that comes through the surface of water: shadows, and caustics on what lies below.
 
 For each body of water and each such lamp one map lies on the level, under a camera parallel to the light
 [mihalik2008, 8]. First the meshes are drawn from there, below the surface and above it. Then a photon for each cell of
 the surface is refracted and followed to the first mesh, and what it carries is summed where the camera sees it land.
+Photons of lamps nearby are followed by rays instead (`near_lamps`, caustic_near.wgsl).
 All is kept until the lamp, the meshes, the water or its waves change; meshes are not drawn again for waves alone.
 """
 
@@ -20,6 +21,7 @@ from pellucid.surroundings.layouts import MAX_WATER_LIGHTS
 from pellucid.surroundings.submersion import DEPTH_FORMAT, WaterRegion, refracted_slope
 from pellucid.techniques.water.lamp_parts import lamp_in_parts, lifted, towards
 from pellucid.techniques.water.layouts import CausticBeam, CausticParams
+from pellucid.techniques.water.near_lamps import is_over, near_lamp_parts, near_lamps
 from pellucid.techniques.water.photons import Tracer
 
 if TYPE_CHECKING:
@@ -51,6 +53,11 @@ class Lamp:
     depth_buffers: list[Any] = field(default_factory=list)
     parts: list[np.ndarray] = field(default_factory=list)
     part_buffers: list[Any] = field(default_factory=list)
+
+    @property
+    def is_near(self) -> bool:
+        """Whether its photons are followed by rays."""
+        return bool(self.params["near"])
 
 
 class WaterLight:
@@ -89,7 +96,7 @@ class WaterLight:
 
     def update(self, bodies: Sequence[Any], lights: Sequence[Any], surroundings: Surroundings) -> None:
         """Bring the maps to date with bodies (`passes.Body`), lamps, and the meshes of the surroundings."""
-        lamps = far_lamps(lights)
+        lamps = lamps_over_water(lights)
         regions = [region_of(body, lamps, surroundings.mesh_bounds_ws) for body in bodies]
         side = max((body.quality.caustic_size for body in bodies), default=1)
         sky = [surroundings.sky_through(region.n) for region in regions]
@@ -106,7 +113,7 @@ class WaterLight:
             channels = max(channels, 2)  # room for the sums of slices
         anew = self._allocate(side, max(len(lamps), 1) * len(bodies), channels) or anew
         records = [
-            (body, self._lamp((k, j), *caustic_params(body, region, lamp, surroundings.submersion.layer(k, j))))
+            (body, self._lamp((k, j), *caustic_params(body, region, lamp, surroundings.submersion.layer(k, j), side)))
             for k, (body, region) in enumerate(zip(bodies, regions, strict=True))
             for j, lamp in enumerate(lamps or [None])
         ]
@@ -117,19 +124,20 @@ class WaterLight:
         encoder = self.device.wgpu.create_command_encoder()
         if anew or drawn != self._drawn:
             for body, lamp in records:
-                self._draw_depth(encoder, body, lamp, surroundings)
+                if not lamp.is_near:
+                    self._draw_depth(encoder, body, lamp, surroundings)
             self.depth_runs += 1
             self._drawn, self._lit = drawn, None
         again = lit != self._lit
         if again:
             for body, lamp in records:
-                self._follow(encoder, body, lamp, surroundings, dark=not lamps)
+                self._follow(encoder, body, lamp, surroundings)
             self.photon_runs += 1
             surroundings.submersion.version += 1
             self._lit = lit
         self.device.wgpu.queue.submit([encoder.finish()])
-        for body, lamp in records if again and lamps else []:
-            if body.quality.caustics == "cpu":
+        for body, lamp in records if again else []:
+            if body.quality.caustics == "cpu" and lamp.parts and not lamp.is_near:
                 self.device.write_texture(
                     surroundings.submersion.light_map,
                     self.tracer(body, lamp, surroundings).light_map(),
@@ -160,7 +168,7 @@ class WaterLight:
                 label="water light depth",
             )
 
-    def _follow(self, encoder: Any, body: Any, lamp: Lamp, surroundings: Surroundings, dark: bool) -> None:
+    def _follow(self, encoder: Any, body: Any, lamp: Lamp, surroundings: Surroundings) -> None:
         around = surroundings.submersion
         side = around.light_map.width
         bound = {
@@ -173,24 +181,30 @@ class WaterLight:
             "caustic_above": self._above_view,
             "caustic_map_out": surroundings.bindings["submerged_light"],
         }
-        groups = (-(-side // ROW), side, int(lamp.params["channels"]))
-        iteration = {"CAUSTIC_ITERATION": float(body.quality.caustic_intersection == "iteration")}
+        cells = int(lamp.params["cells"])
+        groups = (-(-cells // ROW), cells, int(lamp.params["channels"]))
         encoder.clear_buffer(self._sums)
-        if not dark:
-            # Beams in the water are made of the device's photons, whoever sums those of the map.
-            for part in lamp.part_buffers:
-                self._kernel("caustic_refract", iteration).run(groups, {**bound, "caustic": part}, encoder)
-                self._kernel("caustic_splat").run(groups, {**bound, "caustic": part}, encoder)
-        self._kernel("caustic_resolve").run((*groups[:2], 1), bound, encoder)
-        if body.quality.god_rays and lamp.params["layer"] == around.layer(int(body.params["region"]), 0):
+        # Beams in the water are made of the device's photons, whoever sums those of the map.
+        for part in lamp.part_buffers:
+            self._photons(body, lamp).run(groups, {**bound, "caustic": part}, encoder)
+            self._kernel("caustic_splat").run(groups, {**bound, "caustic": part}, encoder)
+        self._kernel("caustic_resolve").run((-(-side // ROW), side, 1), bound, encoder)
+        first = lamp.params["layer"] == around.layer(int(body.params["region"]), 0)
+        if body.quality.god_rays and first and not lamp.is_near:
             slices = self._slices_of(int(body.params["region"]), side // SLICE_CELLS)
             bound["caustic_slice_out"] = slices
             if len(lamp.parts) > 1:
-                self._kernel("caustic_refract", iteration).run(groups, bound, encoder)
+                self._photons(body, lamp).run(groups, bound, encoder)
             encoder.clear_buffer(self._sums)
             groups = (-(-slices.size[0] // ROW), slices.size[1], SLICES)
             self._kernel("caustic_slice").run(groups, bound, encoder)
             self._kernel("caustic_slice_resolve").run(groups, bound, encoder)
+
+    def _photons(self, body: Any, lamp: Lamp) -> ComputeKernel:
+        if lamp.is_near:
+            return self._kernel("caustic_near")
+        iteration = body.quality.caustic_intersection == "iteration"
+        return self._kernel("caustic_refract", {"CAUSTIC_ITERATION": float(iteration)})
 
     def _slices_of(self, region: int, side: int) -> Any:
         kept = self._slices.get(region)
@@ -255,20 +269,29 @@ def far_lamps(lights: Sequence[Any]) -> list[DirectionalLight]:
     return high[:MAX_WATER_LIGHTS]
 
 
+def lamps_over_water(lights: Sequence[Any]) -> list[Any]:
+    """Those that have maps, in the order of `Light.water_layer`: lamps far away first."""
+    return [*far_lamps(lights), *near_lamps(lights)][:MAX_WATER_LIGHTS]
+
+
+def shines_in(lamp: Any, body: Any) -> bool:
+    """Whether a lamp nearby has photons in a body of water: where that has caustics, and is below it."""
+    top = float(body.params["level"] + body.params["wave_high"])
+    return body.quality.caustics != "none" and is_over(lamp, top)
+
+
 def channel_count(body: Any) -> int:
     """How many colours of a body of water are refracted apart."""
     n = body.params["n_water"]
     return 1 if n[0] == n[1] == n[2] else 3
 
 
-def region_of(
-    body: Any, lamps: Sequence[DirectionalLight], mesh_bounds: Sequence[tuple[np.ndarray, np.ndarray]]
-) -> WaterRegion:
+def region_of(body: Any, lamps: Sequence[Any], mesh_bounds: Sequence[tuple[np.ndarray, np.ndarray]]) -> WaterRegion:
     """What stands for a body of water where surfaces are lit.
 
     Parameters
     ----------
-    body : of `passes.Body`. lamps : of `far_lamps`. mesh_bounds : lower and upper corner of each mesh, metres.
+    body : of `passes.Body`. lamps : of `lamps_over_water`. mesh_bounds : lower and upper corner of each mesh, metres.
     """
     p, quality = body.params, body.quality
     n = tuple(float(v) for v in p["n_water"] / p["n_outside"])
@@ -292,23 +315,27 @@ def region_of(
         slopes=tuple(camera_slope(lamp, n[1], quality) for lamp in lamps),
         shadows=tuple(quality.shadows and lamp.cast_shadow for lamp in lamps),
         along=quality.caustic_camera == "refracted" and n[1] >= 1.0,
+        near=tuple(shines_in(lamp, body) for lamp in lamps),
     )
 
 
-def camera_slope(lamp: DirectionalLight, n: float, quality: WaterQuality) -> tuple[float, float]:
+def camera_slope(lamp: Any, n: float, quality: WaterQuality) -> tuple[float, float]:
     """Horizontal way over depth, (x, z), of the camera of a map: along the refracted light, or the incident."""
+    if not isinstance(lamp, DirectionalLight):
+        return 0.0, 0.0
     return refracted_slope(lifted(towards(lamp)), n if quality.caustic_camera == "refracted" else 1.0)
 
 
 def caustic_params(
-    body: Any, region: WaterRegion, lamp: DirectionalLight | None, layer: int
+    body: Any, region: WaterRegion, lamp: Any, layer: int, side: int
 ) -> tuple[np.ndarray, list[np.ndarray]]:
     """() record of `layouts.CausticParams` for the middle of a lamp, and those of its parts.
 
-    Without a lamp only heights are asked of it.
+    Without a lamp, or one over the water, there are no parts, and only heights are asked of the record.
     """
     p = np.zeros((), CausticParams)
-    to_light = lifted(towards(lamp)) if lamp is not None else np.array([0.0, 1.0, 0.0])
+    to_light = lifted(towards(lamp)) if isinstance(lamp, DirectionalLight) else np.array([0.0, 1.0, 0.0])
+    p["cells"] = side
     p["to_light"], p["layer"], p["index"], p["reach_m"] = to_light, layer, region.n, region.reach_m
     p["slope"] = camera_slope(lamp, region.n[1], body.quality) if lamp is not None else 0.0
     p["slope_above"] = to_light[[0, 2]] / to_light[1]
@@ -318,9 +345,11 @@ def caustic_params(
     p["reach_above_m"] = 1e4
     p["share"] = 1.0
     if lamp is None:
-        return p, [p]
+        return p, []
     p["shadows"] = body.quality.shadows and lamp.cast_shadow
-    texel_m = (np.asarray(region.high_m) - region.low_m) / body.quality.caustic_size
+    if not isinstance(lamp, DirectionalLight):
+        return p, near_lamp_parts(p, lamp, region) if shines_in(lamp, body) else []
+    texel_m = (np.asarray(region.high_m) - region.low_m) / side
     return p, lamp_in_parts(p, lamp, texel_m)
 
 

@@ -67,6 +67,16 @@ CausticParams = struct(
         ("channels", "u32"),  # 3 with dispersion, else 1
         ("steps", "u32"),  # of the iteration
         ("above", "f32"),  # of the depth pass: 1 for what is over the surface
+        ("cells", "u32"),  # of the surface along a side, one photon each
+        ("places", "u32"),  # of a lamp nearby that the level water is asked of: its middle, and four of a rectangle
+        ("place", "vec3f"),  # of a lamp nearby, or of a part of it, world space
+        ("near", "f32"),  # 1 for such a lamp
+        ("middle", "vec3f"),  # of the whole lamp
+        ("is_area", "f32"),
+        ("facing", "vec3f"),  # normal of a rectangle
+        ("divided", "vec2f"),  # parts along its edges
+        ("edge_u", "vec3f"),  # of the whole
+        ("edge_v", "vec3f"),
     ]
 )
 
@@ -76,7 +86,7 @@ CausticBeam = struct(
         ("landed", "vec2f"),  # in texels of the map
         ("flux", "f32"),  # over that which falls on a cell of a level surface
         ("depth_m", "f32"),  # of the landing below the surface
-        ("entered", "vec2f"),  # like landed, where it came through the surface
+        ("entered", "vec2f"),  # like landed, where it came through the surface; the lamp's picture, if that is nearby
         ("entered_m", "f32"),  # below the highest wave
     ]
 )

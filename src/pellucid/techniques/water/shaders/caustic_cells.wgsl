@@ -1,11 +1,11 @@
-// Cells of a surface, of which there are as many as texels of its map.
+// Cells of a surface, of which there are as many as texels of its map, or fewer where the lamp is too wide for that.
 //!import techniques/water/shaders/caustic_bindings
 
 const CAUSTIC_UNITS = 1048576.0;  // of flux: what falls on one cell. 4000 times as much still fits
 
 // Cells along a side
 fn caustic_side() -> u32 {
-    return textureDimensions(caustic_map_out).x;
+    return caustic.cells;
 }
 
 fn caustic_cell(xy: vec2u, channel: u32) -> u32 {

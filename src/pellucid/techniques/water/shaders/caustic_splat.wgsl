@@ -17,7 +17,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let along = landed_beside(id, vec2i(1, 0), beam.landed);
     let across = landed_beside(id, vec2i(0, 1), beam.landed);
     let texel_m = (water.high - water.low) / f32(side);
-    let lamp = caustic.lamp_side * beam.depth_m / texel_m;
+    let lamp = mix(caustic.lamp_side * beam.depth_m / texel_m, beam.entered, caustic.near);
     caustic_spread(vec2f(along.x, across.y), along.zw, across.zw, lamp, beam.flux, vec3u(side, side, id.z * side));
 }
 
