@@ -1,6 +1,6 @@
 // Beams that waves and shadows cut out of the light in the water, by a march through slices of it.
 //!import surroundings/shaders/submersion
-//!import techniques/water/shaders/beam
+//!import surroundings/shaders/beam
 //!import techniques/water/shaders/bindings
 
 @group(0) @binding(26) var caustic_slices: texture_3d<f32>;  // what comes to each depth, over that under a level surface
