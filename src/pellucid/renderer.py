@@ -166,7 +166,15 @@ class Renderer:
         stand_ins = [
             mesh for technique, own in drawn if hasattr(technique, "stand_ins") for mesh in technique.stand_ins(own)
         ]
-        self.surroundings.prepare(scene, size, stand_ins)
+        # Where nothing else sends rays, volumes see one another by themselves.
+        mixed = sum(bool(own) for own in items.values()) > 1
+        interfaces = [
+            surface
+            for technique, own in drawn
+            if mixed and hasattr(technique, "interfaces")
+            for surface in technique.interfaces(own, items[Water])
+        ]
+        self.surroundings.prepare(scene, size, stand_ins, interfaces)
         for technique, own in drawn:
             technique.prepare(own, self.surroundings)
 

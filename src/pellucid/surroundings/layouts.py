@@ -42,6 +42,7 @@ FrameParams = struct(
         ("triangle_count", "u32"),
         ("sample_index", "u32"),
         ("environment_height", "f32"),
+        ("joint_root", "u32"),  # node over all triangles, those of interfaces too; 0 where there are none
         ("environment_sh", ("vec4f", 9)),
     ]
 )
@@ -80,6 +81,8 @@ Material = struct(
         ("base_color_layer", "i32"),  # -1 when the material has no map
         ("texels_per_m", "f32"),  # mean density of the map on the surface, at level 0
         ("flags", "u32"),
+        ("inner", "vec4f"),  # of an interface, behind its faces: absorption 1/m, index over that of air; else 0
+        ("outer", "vec4f"),  # before them; index 0 for whatever is around, air or water
     ]
 )
 

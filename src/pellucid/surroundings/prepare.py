@@ -10,6 +10,7 @@ import numpy as np
 from pellucid.surroundings import environment, geometry, lights, maps
 from pellucid.surroundings.camera import View, view_of, write_view
 from pellucid.surroundings.caustics import CausticMaps
+from pellucid.surroundings.interfaces import Interface, join, matter_records, together
 from pellucid.surroundings.layouts import MATERIAL_CASTS_SHADOW, MATERIAL_UNSEEN, FrameParams, Light
 from pellucid.surroundings.submersion import SkyThroughSurface, Submersion, sky_through, small_sky
 
@@ -64,6 +65,7 @@ class Surroundings:
         self._layers: list[int] = []
         self._map_size = 1
         self._shown = 0
+        self._interfaces: Sequence[Interface] = ()
         self._casters: list[list[bool]] = []
         self._lamp_kinds = lights.lamp_constants(np.zeros(0, Light))
         self._far_lamps = 0
@@ -106,6 +108,11 @@ class Surroundings:
         return {**own, "LAMPS_OCCLUDED": float(self.triangle_count > 0), **self._lamp_kinds}
 
     @property
+    def across_constants(self) -> dict[str, float]:
+        """Override constants of shaders whose rays meet what stands for water and glass."""
+        return {"ACROSS_WATER": float(self.submersion.active), "ACROSS_GLASS": float(bool(self._interfaces))}
+
+    @property
     def sun_may_be_apart(self) -> bool:
         """Whether all that waves change of the light on meshes is one map, of one lamp and one water."""
         regions = self.submersion.regions
@@ -133,20 +140,28 @@ class Surroundings:
         """How many meshes the picture shows: those of the scene, without stand-ins."""
         return self._shown
 
-    def prepare(self, scene: Scene, size: tuple[int, int], stand_ins: Sequence[Mesh] = ()) -> None:
+    def prepare(
+        self,
+        scene: Scene,
+        size: tuple[int, int],
+        stand_ins: Sequence[Mesh] = (),
+        interfaces: Sequence[Interface] = (),
+    ) -> None:
         """Upload what differs from the last call; the parts of a scene are told apart by identity.
 
         Parameters
         ----------
         scene : the scene. size : (width, height) of the picture in pixels.
         stand_ins : meshes that rays and lamps meet, but the picture does not show, since a technique draws better.
+        interfaces : the same of transparent matter, met by rays that ask for it (`across_constants`); told apart by
+            identity.
         """
         from pellucid.scene import Mesh
 
         meshes = [o for o in scene.objects if isinstance(o, Mesh)] + list(stand_ins)
         self._shown = len(meshes) - len(stand_ins)
         try:
-            moved = self._prepare_geometry(meshes)
+            moved = self._prepare_geometry(meshes, interfaces)
             self._prepare_maps(meshes)
             self._prepare_materials(meshes, relit=self._prepare_lights(scene.lights, moved))
             self._prepare_environment(scene.environment)
@@ -195,20 +210,30 @@ class Surroundings:
         """Number of the picture among those that are averaged, as `set_camera` was told."""
         return int(self._frame["sample_index"])
 
-    def _prepare_geometry(self, meshes: Sequence[Mesh]) -> bool:
+    def _prepare_geometry(self, meshes: Sequence[Mesh], interfaces: Sequence[Interface]) -> bool:
         state = [_placement(m) for m in meshes]
-        if not self._changed("geometry", [part for mesh in state for part in mesh]):
-            return False
-        self._geometry = geometry.gather(meshes)
+        moved = self._changed("geometry", [part for mesh in state for part in mesh])
+        if moved:
+            self._geometry = geometry.gather(meshes)
+        joined_anew = self._changed("interfaces", [len(meshes), *interfaces])
+        if moved or joined_anew:
+            self._interfaces = tuple(interfaces)
+            self._store_triangles(len(meshes))
+        return moved
+
+    def _store_triangles(self, meshes: int) -> None:
+        """Meshes and interfaces on the device; the atlas of caustics is made anew for them."""
         self.caustics.drop()
-        self._store("bvh_nodes", self._geometry.nodes)
-        self._store("bvh_triangles", self._geometry.triangles)
-        self._store("triangle_attributes", self._geometry.attributes)
+        own = self._geometry
+        joined = join((own.nodes, own.triangles, own.attributes), own.count, self._interfaces, max(meshes, 1))
+        self._store("bvh_nodes", joined.nodes)
+        self._store("bvh_triangles", joined.triangles)
+        self._store("triangle_attributes", joined.attributes)
+        self._frame["joint_root"] = joined.root
         self.triangle_count = self._geometry.count
         self.mesh_bounds_ws = self._geometry.bounds
         self._frame["triangle_count"] = self._geometry.count
         self._frame["ray_epsilon_m"] = RAY_EPSILON * self._geometry.scale_m
-        return True
 
     def _prepare_maps(self, meshes: Sequence[Mesh]) -> None:
         images = [m.base_color_map for m in meshes]
@@ -229,9 +254,10 @@ class Surroundings:
         return True
 
     def _prepare_materials(self, meshes: Sequence[Mesh], relit: bool) -> None:
-        if not self._changed("materials", [*meshes, self._shown]) and not relit:
+        if not self._changed("materials", [*meshes, self._shown, *self._interfaces]) and not relit:
             return
-        records = geometry.materials(meshes, self._geometry, self._layers, self._map_size)
+        own = geometry.materials(meshes, self._geometry, self._layers, self._map_size)
+        records = together(own, matter_records(self._interfaces))
         for layer, casts in enumerate(self._casters):
             records["flags"][: len(casts)] |= np.uint32(MATERIAL_CASTS_SHADOW << layer) * np.array(casts)
         records["flags"][self._shown : len(meshes)] |= MATERIAL_UNSEEN

@@ -33,9 +33,10 @@ class Query:
         """
         return self._run("hits", origins, directions, t_max)
 
-    def radiance(self, origins: np.ndarray, directions: np.ndarray) -> np.ndarray:
-        """Radiance (N, 3) that comes back along each ray."""
-        return self._run("radiance", origins, directions, 0.0)["value"]
+    def radiance(self, origins: np.ndarray, directions: np.ndarray, across: bool = False) -> np.ndarray:
+        """Radiance (N, 3) that comes back along each ray; `across` what stands for water and glass, too."""
+        constants = self.surroundings.across_constants if across else {}
+        return self._run("radiance", origins, directions, 0.0, constants)["value"]
 
     def environment(self, directions: np.ndarray, lod: float = 0.0) -> np.ndarray:
         """Radiance (N, 3) of the environment at one of its blurred levels."""
@@ -52,10 +53,17 @@ class Query:
         shape = (height, width, 3)
         return out["value"].reshape(shape), out["direction"].reshape(shape)
 
-    def _run(self, entry: str, origins: np.ndarray, directions: np.ndarray, t_max: float) -> np.ndarray:
+    def _run(
+        self,
+        entry: str,
+        origins: np.ndarray,
+        directions: np.ndarray,
+        t_max: float,
+        more: dict[str, float] | None = None,
+    ) -> np.ndarray:
         rays = np.zeros(len(directions), QueryRay)
         rays["origin"], rays["direction"], rays["t_max"] = origins, directions, t_max
-        constants = self.surroundings.shading_constants
+        constants = {**self.surroundings.shading_constants, **(more or {})}
         kernel = Pipelines(self.device, shared=True).kernel("surroundings/shaders/query", constants, entry)
         found = self.device.buffer(QueryHit.itemsize * len(rays), label="query hits")
         own = {"query_rays": self.device.buffer(rays, label="query rays"), "query_hits": found}

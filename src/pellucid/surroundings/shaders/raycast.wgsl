@@ -24,15 +24,20 @@ fn trace_opaque(origin_ws: vec3f, direction_ws: vec3f, t_max: f32) -> SurfaceHit
 
 // Nearest opaque surface with 0 < t < t_max; `cull` lets a ray pass the back of what is single-sided, as light does not
 fn nearest_surface(origin_ws: vec3f, direction_ws: vec3f, t_max: f32, cull: bool) -> SurfaceHit {
+    return nearest_below(0u, origin_ws, direction_ws, t_max, cull);
+}
+
+// The same of the triangles below one node
+fn nearest_below(root: u32, origin_ws: vec3f, direction_ws: vec3f, t_max: f32, cull: bool) -> SurfaceHit {
     var hit = SurfaceHit(t_max, false, 0u, vec2f(0.0));
-    if bvh_is_empty() {
+    if root == 0u && bvh_is_empty() {
         return hit;
     }
     let inverse = bvh_inverse(direction_ws);
     var stack: array<u32, BVH_STACK>;
     var top = 0u;
-    var index = 0u;
-    if bvh_entry(0u, origin_ws, inverse, t_max) == BVH_MISS {
+    var index = root;
+    if bvh_entry(root, origin_ws, inverse, t_max) == BVH_MISS {
         return hit;
     }
     loop {

@@ -34,11 +34,13 @@ from pellucid.techniques.eikonal.resources import (
     scatters,
     upload,
 )
+from pellucid.techniques.eikonal.stand_in import StandIns
 from pellucid.techniques.eikonal.wavelengths import at_sample, common_draws
 
 if TYPE_CHECKING:
-    from pellucid.scene import Camera, LightQuality, RefractiveVolume
+    from pellucid.scene import Camera, LightQuality, RefractiveVolume, Water
     from pellucid.surroundings import Surroundings
+    from pellucid.surroundings.interfaces import Interface
 
 # A picture is drawn in bands of rows, so that the lists of waiting rays keep to 150 MB.
 BAND_PIXELS = 1 << 18
@@ -98,6 +100,7 @@ class EikonalTechnique:
         self._simulator: LightSimulator | None = None
         self._lit: dict[int, Any] = {}
         self._cast: list[Any] = []
+        self._stand_ins = StandIns()
         self._sum = self._kernel("sum", {})
         self._composite = RenderPass(
             device,
@@ -112,6 +115,10 @@ class EikonalTechnique:
         """Bytes of GPU memory held: volumes, and the lists of rays."""
         lists = sum(b.size for b in self._lists.values()) + self._relay.nbytes
         return sum(v.textures.nbytes for v in self._loaded.values()) + lists
+
+    def interfaces(self, objects: Sequence[RefractiveVolume], waters: Sequence[Water]) -> list[Interface]:
+        """What rays of other techniques meet of the objects."""
+        return self._stand_ins.of(objects, waters)
 
     def prepare(self, objects: Sequence[RefractiveVolume], surroundings: Surroundings) -> None:
         """Make every volume resident, drop those that are gone, and write the parameters of each object."""
@@ -345,7 +352,10 @@ class EikonalTechnique:
             kernel, bindings = marches[0]
             kernel.run(blocks, bindings, encoder, timer, "eikonal march")
         constants = {"HAS_MESHES": float(has_meshes), **surroundings.shading_constants}
-        look = self._kernel("look", {**constants, "SCREEN_SPACE": float(self._by_screen)})
+        # Rays that leave a body have been sent to all others already: what stands for them is met behind water.
+        across = surroundings.across_constants if surroundings.submersion.active else {}
+        across = {**across, "ACROSS_FIRST": 0.0} if across else {}
+        look = self._kernel("look", {**constants, **across, "SCREEN_SPACE": float(self._by_screen)})
         look.run((0, 0, 0), shared, encoder, timer, "eikonal look", indirect=(looks, 0))
         rough = any(spreading(item) for item in objects)
         if any(glints) or rough:

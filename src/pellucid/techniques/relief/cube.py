@@ -47,7 +47,8 @@ class SceneCube:
         """Look around from a point of the world, in the middle of a mesh."""
         self._drawn = (mesh, np.array(center_ws))
         pipelines = Pipelines(self.device, shared=True)
-        cube = pipelines.draw("techniques/relief/shaders/cube", surroundings.shading_constants, targets=(FORMAT,))
+        constants = {**surroundings.shading_constants, **surroundings.across_constants}
+        cube = pipelines.draw("techniques/relief/shaders/cube", constants, targets=(FORMAT,))
         for face, (buffer, view) in enumerate(zip(self._faces, self._layers, strict=True)):
             self.device.write(buffer, np.array([*center_ws, face, SIDE, 0, 0, 0], np.float32))
             bound = {**surroundings.bindings, "cube_face": buffer}

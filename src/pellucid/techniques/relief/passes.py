@@ -224,6 +224,7 @@ class ReliefTechnique:
             )
             rays = body.quality.environment == "rays" and self._meets_meshes(body, surroundings)
             constants = {**body.constants, **surroundings.shading_constants, "RELIEF_RAYS": float(rays)}
+            constants |= surroundings.across_constants if body.quality.environment == "rays" else {}
             constants["LAMPS_OCCLUDED"] = float(self._meets_meshes(body, surroundings))
             self._pass("compose", constants).run(
                 encoder,

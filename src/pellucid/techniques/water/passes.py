@@ -174,7 +174,7 @@ class WaterTechnique:
             bound |= body.pictures.bindings
         sides = needs_pictures(quality) and body.border.shows(body.item, body.waves.limits_m[0], surroundings)
         constants = {**body.constants(quality, sides), "WATER_RATE": float(rate)}
-        composed = {**constants, **surroundings.shading_constants}
+        composed = {**constants, **surroundings.shading_constants, **self._across(surroundings)}
         if rate == 1:
             on_surface = {"scissor": region, "timer": timer}
             self._pass("find", constants).run(
@@ -212,6 +212,11 @@ class WaterTechnique:
         if body.quality.glow > 0.0:
             self._glow = self._glow or WaterGlow(self.device)
             self._glow.draw(encoder, targets, bound, body.quality.glow, timer)
+
+    def _across(self, surroundings: Surroundings) -> dict[str, float]:
+        """Rays meet what stands for other things only where there are any."""
+        constants = surroundings.across_constants
+        return constants if len(self.bodies) > 1 or constants["ACROSS_GLASS"] else {}
 
     def _body(self, item: Water, before: list[Body], number: int) -> Body:
         quality = quality_of(item.technique, item.quality)

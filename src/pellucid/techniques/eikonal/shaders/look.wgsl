@@ -23,7 +23,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         seen = surface_irradiance(ray.origin, ray.direction);
     } else if (SCREEN_SPACE) {
         seen = screen_radiance(ray.origin, ray.direction);
-    } else if (HAS_MESHES) {
+    } else if (HAS_MESHES || ACROSS_WATER) {
         seen = radiance_along(ray.origin, ray.direction);
     } else {
         seen = environment_radiance(ray.direction);

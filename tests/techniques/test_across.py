@@ -1,0 +1,101 @@
+"""Techniques that see one another: pictures of water and glass in one scene."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import pellucid as pl
+from pellucid.gpu import Device
+from pellucid.optics import fresnel_dielectric
+from pellucid.surroundings import Query
+from water_scenes import rays
+
+SKY = 0.7
+BLACK = pl.media.water_body((1e4, 1e4, 1e4), (0.0, 0.0, 0.0), name="ink")
+
+
+@pytest.fixture(scope="module")
+def renderer(device: Device) -> pl.Renderer:
+    return pl.Renderer(device)
+
+
+def even_sky() -> pl.Environment:
+    return pl.Environment.constant((SKY, SKY, SKY))
+
+
+def test_a_tank_is_mirrored_in_a_pool_by_both_their_reflectances(renderer: pl.Renderer) -> None:
+    """Both hold ink, so that the sky alone is seen: mirrored once, by the pool, or by a side of the tank as well."""
+    pool = pl.Water(level=0.0, extent_m=(40.0, 10.0), center=(0.0, 5.0), medium=BLACK)
+    tank = pl.Water(level=1.0, extent_m=(40.0, 2.0), center=(0.0, -2.0), medium=BLACK)
+    camera, size = pl.Camera(position=(0, 1.0, 4.0), target=(0, 0.0, 1.0), fov_deg=40), (24, 24)
+    scene = pl.Scene(camera=camera, environment=even_sky(), objects=[pool, tank])
+    picture = renderer.render(scene, size).radiance.reshape(-1, 3)
+    origins, ways, _ = rays(camera, size)
+    down = -ways[:, 1]
+    at = origins - (origins[:, 1] / ways[:, 1])[:, None] * ways
+    # Where the mirrored ray is as high as the tank's side that faces the pool
+    height = down * (at[:, 2] + 1.0) / -ways[:, 2]
+    first = fresnel_dielectric(down, 1.0, pool.matter.n_d)
+    second = fresnel_dielectric(-ways[:, 2], 1.0, tank.matter.n_d)
+    on_pool = (down > 0.0) & (at[:, 2] > 0.02) & (at[:, 2] < 4.0)
+    twice, once = on_pool & (height < 0.98), on_pool & (height > 1.02)
+    assert twice.sum() > 50 and once.sum() > 50
+    np.testing.assert_allclose(picture[twice, 1], (SKY * first * second)[twice], rtol=2e-4)
+    np.testing.assert_allclose(picture[once, 1], (SKY * first)[once], rtol=2e-4)
+
+
+def test_what_stands_for_level_water_is_what_its_own_picture_shows(renderer: pl.Renderer) -> None:
+    """Of a lake over a floor, with its sun and its scattered light, from above; where no sun is mirrored."""
+    floor = pl.Mesh.checkerboard(8.0, squares=8, position=(0, -1.2, 0), specular=0.0)
+    lake = pl.Water(level=0.0, extent_m=8.0, medium="lake")
+    sun = pl.DirectionalLight(direction=(0.6, -0.7, 0.4))
+    camera, size = pl.Camera(position=(0.3, 1.6, 3.0), target=(0, -0.2, -0.5), fov_deg=50), (32, 24)
+    scene = pl.Scene(camera=camera, environment=pl.Environment.sky(sun_disc=False), lights=[sun], objects=[floor, lake])
+    picture = renderer.render(scene, size).radiance.reshape(-1, 3)
+    origins, ways, _ = rays(camera, size)
+    seen = Query(renderer.surroundings).radiance(origins, ways, across=True)
+    at = origins - (origins[:, 1] / ways[:, 1])[:, None] * ways
+    inside = (ways[:, 1] < 0.0) & (np.abs(at[:, [0, 2]]) < 3.9).all(axis=1)
+    # The outermost texels of the floor's pattern lie between two pixels.
+    apart = np.abs(seen - picture).max(axis=1)[inside] / picture[inside].max()
+    assert inside.sum() > 300
+    assert np.quantile(apart, 0.95) < 1e-3 and apart.mean() < 1e-3
+
+
+def test_a_ball_of_glass_is_seen_in_and_under_the_water_that_it_lies_in(renderer: pl.Renderer) -> None:
+    """Red glass of the index of water, all of it under water: it takes green and blue from the light of the floor."""
+    floor = pl.Mesh.plane(8.0, position=(0, -1.0, 0), base_color=(0, 0, 0), specular=0.0, emission=(1, 1, 1))
+    red = pl.media.constant(1.333, (0.0, 50.0, 50.0))
+    ball = pl.RefractiveVolume.from_sdf(
+        lambda x, y, z: np.sqrt(x**2 + y**2 + z**2) - 0.3, red, 32, 0.8, position=(0.0, -0.5, 0.0)
+    )
+    pool = pl.Water(level=0.0, extent_m=8.0, medium=1.333)
+    camera, size = pl.Camera(position=(0, 3.0, 0.001), target=(0, 0, 0), fov_deg=40), (33, 33)
+    scene = pl.Scene(camera=camera, environment=even_sky(), objects=[floor, ball, pool])
+    frame = renderer.render(scene, size)
+    share = fresnel_dielectric(1.0, 1.0, 1.333)
+    clear = share * SKY + (1.0 - share) / 1.333**2
+    middle, beside = frame.radiance[16, 16], frame.radiance[16, 2]
+    np.testing.assert_allclose(middle, (clear, share * SKY, share * SKY), rtol=1e-3)
+    np.testing.assert_allclose(beside, clear, rtol=2e-2)
+    assert frame.depth[16, 16] == pytest.approx(3.0, abs=1e-3)  # that of the surface, not of the ball
+
+
+def test_a_ball_over_water_shows_the_water_and_not_the_dry_floor(renderer: pl.Renderer) -> None:
+    """Glass of the index of air shows what is behind it as if it were not there."""
+    floor = pl.Mesh.plane(8.0, position=(0, -1.0, 0), base_color=(0, 0, 0), specular=0.0, emission=(1, 1, 1))
+    blue = pl.media.water_body((2.0, 0.5, 0.1), (0.0, 0.0, 0.0), name="blue")
+    nothing = pl.media.constant(1.0, (0.1, 0.1, 0.1))
+    ball = pl.RefractiveVolume.from_sdf(
+        lambda x, y, z: np.sqrt(x**2 + y**2 + z**2) - 0.3, nothing, 32, 0.8, position=(0.0, 0.6, 0.0)
+    )
+    pool = pl.Water(level=0.0, extent_m=8.0, medium=blue)
+    camera = pl.Camera(position=(0, 3.0, 0.001), target=(0, 0, 0), fov_deg=40)
+    pictures = [
+        renderer.render(pl.Scene(camera=camera, environment=even_sky(), objects=objects), (33, 33)).radiance
+        for objects in ([floor, pool], [floor, ball, pool])
+    ]
+    kept, mirrored = np.exp(-0.1 * 0.6), SKY * fresnel_dielectric(1.0, 1.0, blue.n_d)
+    expected = kept * (pictures[0][16, 16] - mirrored) + kept**2 * mirrored  # the sky is mirrored through the ball, too
+    np.testing.assert_allclose(pictures[1][16, 16], expected, rtol=1e-3)
