@@ -141,15 +141,53 @@ def test_choppy_waves_have_narrow_crests_and_wide_troughs() -> None:
     assert found.fold is not None and np.corrcoef(found.fold.ravel(), found.heights.ravel())[0, 1] < -0.5
 
 
-def test_the_way_back_ends_where_it_should() -> None:
-    """x0 + D(x0) = x for smooth moves that halve the water at crests."""
+@pytest.mark.parametrize(("size", "enough"), [(1.0, 0.03), (0.19, 0.002)])
+def test_the_way_back_ends_where_it_should(size: float, enough: float) -> None:
+    """x0 + D(x0) = x, in cells: for smooth moves that halve the water at crests, and for those of less than a cell."""
     at = 2.0 * np.pi * np.arange(64) / 64
-    move_x = np.float32(0.5 / (2.0 * np.pi / 64)) * np.sin(at)[None, :].repeat(64, 0).astype(np.float32)
-    move_z = np.float32(0.3 / (2.0 * np.pi / 64)) * np.cos(at)[:, None].repeat(64, 1).astype(np.float32)
-    column, row = grid_origins(move_x, move_z, (1.0, 1.0))
+    cell_m, zero = (1.0, 2.0), np.zeros((64, 64), np.float32)
+    reach_x, reach_z = size * 0.5 * 64 / (2.0 * np.pi), size * 0.3 * 64 / (2.0 * np.pi)
+    move_x = (reach_x * np.sin(at)[None, :] * cell_m[0] + zero).astype(np.float32)
+    move_z = (reach_z * np.cos(at)[:, None] * cell_m[1] + zero).astype(np.float32)
+    bent = (size * 0.5 * np.cos(at)[None, :] + zero, -size * 0.3 * np.sin(at)[:, None] + zero, zero)
+    assert (max(reach_x, reach_z) < 1.0) == (size < 1.0)
+    column, row = grid_origins(move_x, move_z, cell_m, bent)
     moved_x, moved_z = bilinear([move_x, move_z], column, row, True)
-    np.testing.assert_allclose(column + moved_x, np.arange(64)[None, :].repeat(64, 0), atol=0.03)
-    np.testing.assert_allclose(row + moved_z, np.arange(64)[:, None].repeat(64, 1), atol=0.03)
+    np.testing.assert_allclose(column + moved_x / cell_m[0] - np.arange(64), 0.0, atol=enough)
+    np.testing.assert_allclose(row + moved_z / cell_m[1] - np.arange(64)[:, None], 0.0, atol=enough)
+
+
+def test_small_moves_that_twist_are_turned_round() -> None:
+    """Of waves that run aslant, whose moves along one axis change along the other; cells are not square."""
+    cell_m, reach = (1.0, 1.5), np.float32(0.9)
+    k = 2.0 * np.pi * np.array([3 / 64, 2 / 72])
+    phase = k[0] * np.arange(64) * cell_m[0] + k[1] * np.arange(48)[:, None] * cell_m[1]
+    length = float(np.hypot(*k))
+    move_x, move_z = ((reach * k_ / length * np.sin(phase)).astype(np.float32) for k_ in k)
+    xx, zz, xz = (reach * a * b / length * np.cos(phase) for a, b in ((k[0], k[0]), (k[1], k[1]), (k[0], k[1])))
+    column, row = grid_origins(move_x, move_z, cell_m, (xx, zz, xz))
+    moved_x, moved_z = bilinear([move_x, move_z], column, row, True)
+    # The first step leaves what moves bend over its length, and between cells; the second, a share of that which is
+    # by how much the gradient changes on the way.
+    bend, least = float(reach) * length**2, 1.0 - float(reach) * length
+    enough = bend * (0.5 * float(reach) ** 2 + 0.125) * bend * (float(reach) + 1.0) / least
+    np.testing.assert_allclose(column + moved_x / cell_m[0] - np.arange(64), 0.0, atol=enough)
+    np.testing.assert_allclose(row + moved_z / cell_m[1] - np.arange(48)[:, None], 0.0, atol=enough)
+    assert float(np.abs(move_x).max()) > 40.0 * enough
+
+
+def test_places_are_looked_up_part_by_part() -> None:
+    """More places than are looked up at once, in every shape that they come in, against one at a time."""
+    planes = list(np.random.default_rng(3).normal(size=(2, 24, 40)).astype(np.float32))
+    column, row = np.linspace(-50.0, 90.0, 900, dtype=np.float32), np.linspace(-30.0, 60.0, 70, dtype=np.float32)
+    grid = bilinear(planes, column, row[:, None], True)
+    flat = bilinear(planes, *(a.reshape(-1) for a in np.broadcast_arrays(column, row[:, None])), True)
+    for plane, one, other in zip(planes, grid, flat, strict=True):
+        assert one.shape == (70, 900)
+        np.testing.assert_array_equal(one.reshape(-1), other)
+        for j, i in ((0, 0), (33, 450), (69, 899)):
+            np.testing.assert_array_equal(bilinear([plane], column[i], row[j], True)[0], one[j, i])
+    assert bilinear(planes, column[:0], row[:0], True)[0].shape == (0,)
 
 
 def test_a_finer_grid_only_adds_shorter_waves() -> None:

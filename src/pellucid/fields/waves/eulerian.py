@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pellucid.fields.waves.source import Singles, bilinear
+from pellucid.fields.waves.source import PART, Singles, bilinear
 
 Array = npt.NDArray[Any]
 
@@ -50,24 +50,51 @@ def moved_slopes(slope_x: Array, slope_z: Array, xx: Array, zz: Array, xz: Array
     return share * (b * slope_x - xz * slope_z), share * (a * slope_z - xz * slope_x), fold
 
 
-def grid_origins(move_x: Singles, move_z: Singles, cell: tuple[float, float]) -> tuple[Singles, Singles]:
+def grid_origins(
+    move_x: Singles, move_z: Singles, cell: tuple[float, float], gradients: tuple[Array, Array, Array]
+) -> tuple[Singles, Singles]:
     """Columns and rows where the water of each cell of a periodic grid comes from; x0 - x = -D(x0), by and by.
 
-    Steps go three quarters of the way, so that they end where waves nearly fold. The first ones are taken on every
-    other row and column: a move bends little over two cells.
+    Moves of less than a cell are turned round with the gradient at the cell itself, twice: what is left is of the
+    third order. Else steps go three quarters of the way, so that they end where waves nearly fold, and the first ones
+    are taken on every other row and column: a move bends little over two cells.
 
     Parameters
     ----------
     move_x, move_z : (H, W) D_x, D_z in metres at cell centres, H and W even.
+    gradients : (H, W) each, dD_x/dx, dD_z/dz, dD_x/dz, which is also dD_z/dx.
     """
     planes = move_x / np.float32(cell[0]), move_z / np.float32(cell[1])
     rows, columns = move_x.shape
     column, row = np.arange(columns, dtype=np.float32), np.arange(rows, dtype=np.float32)[:, None]
+    if max(float(plane.max()) for plane in planes) < 1.0 and min(float(plane.min()) for plane in planes) > -1.0:
+        return _near_origins(planes, column, row, gradients, cell)
     back = [-plane[::2, ::2] for plane in planes]
     for _ in range(7):
         back = _nearer(planes, column[::2], row[::2], back)
     back = _nearer(planes, column, row, [_twice_as_fine(part) for part in back])
     return column + back[0], row + back[1]
+
+
+def _near_origins(planes: Any, column: Singles, row: Singles, gradients: Any, cell: Any) -> tuple[Singles, Singles]:
+    """Two steps of Newton's method, both with the gradient where the first one starts."""
+    found = np.empty((2, *planes[0].shape), np.float32)
+    across = np.float32(cell[1] / cell[0]), np.float32(cell[0] / cell[1])
+    for start in range(0, len(row), step := max(1, PART // column.size)):
+        part = slice(start, start + step)
+        xx, zz, xz = (gradient[part] for gradient in gradients)
+        a, b = 1.0 + xx, 1.0 + zz
+        share = 1.0 / np.maximum(a * b - xz * xz, LEAST_FOLD)
+        a, b, c = share * a, share * b, share * xz
+        c_x, c_z = c * across[0], c * across[1]
+        d_x, d_z = (plane[part] for plane in planes)
+        x, z = column - b * d_x + c_x * d_z, row[part] - a * d_z + c_z * d_x
+        d_x, d_z = bilinear(planes, x, z, True)
+        d_x += x - column
+        d_z += z - row[part]
+        found[0, part] = x - b * d_x + c_x * d_z
+        found[1, part] = z - a * d_z + c_z * d_x
+    return found[0], found[1]
 
 
 def _nearer(planes: Any, column: Singles, row: Singles, back: list[Singles]) -> list[Singles]:

@@ -212,13 +212,15 @@ class Ocean(WaveSource):
         if self.loop_s is not None:
             turn = 2.0 * np.pi / self.loop_s
             omega = np.round(omega / turn) * turn
-        self.omega = omega
+        self.omega, self._turns_s = omega, omega / (2.0 * np.pi)
         self._along_x, self._along_z = (1j * k_x).astype(np.complex64)[:, half], (1j * k_z).astype(np.complex64)
         self._inverse = np.where(k > 0.0, 1.0 / np.where(k > 0.0, k, 1.0), 0.0).astype(np.float32)
 
     def _coefficients(self, time_s: float) -> Complex:
         """(H, W/2 + 1) of the heights over x0: waves cos(omega t) - i waves sin(omega t)."""
-        phase = np.remainder(self.omega * time_s, 2.0 * np.pi).astype(np.float32)
+        turns = self._turns_s * time_s
+        turns -= np.floor(turns)
+        phase = np.float32(2.0 * np.pi) * turns.astype(np.float32)
         return np.asarray(self._sum * np.cos(phase) + self._difference * np.sin(phase))
 
     def _surface(self, time_s: float) -> WaveSurface:
@@ -241,7 +243,7 @@ class Ocean(WaveSource):
         of_x, of_z = self._along_x * move_x, self._along_z * move_z
         gradients = field(of_x), field(of_z), field(self._along_x * move_z)
         planes = field(waves), *moved_slopes(field(slope_x), field(slope_z), *gradients)
-        places = grid_origins(field(move_x), field(move_z), self.cell)
+        places = grid_origins(field(move_x), field(move_z), self.cell, gradients)
         heights, along_x, along_z, fold = bilinear(planes, *places, True)
         return WaveSurface(self._cut(heights), np.stack([along_x, along_z], axis=-1), fold)
 
