@@ -72,6 +72,7 @@ class Surroundings:
         self.caustics = CausticMaps(device, self._resources)
         self.submersion = Submersion(device, self._resources)
         self._viewed: tuple[Camera, tuple[int, int]] | None = None
+        self._aimed: tuple[tuple[float, float], int] | None = None
         self._sky = np.zeros((1, 2, 3))
         self._through: dict[tuple[float, ...], SkyThroughSurface] = {}
 
@@ -195,7 +196,12 @@ class Surroundings:
         """
         if self._viewed != (camera, size):
             self._viewed, self.view = (camera, size), view_of(camera, size)
-        write_view(self._frame, self.view, size, jitter)
+            self._aimed = None
+        # The environment's size decides which of its levels is as sharp as the picture.
+        aimed = jitter, int(self._frame["environment_height"])
+        if self._aimed != aimed:
+            self._aimed = aimed
+            write_view(self._frame, self.view, size, jitter)
         self._frame["sample_index"] = sample_index
         self.device.write(self._resources["frame"], self._frame.reshape(1))
 

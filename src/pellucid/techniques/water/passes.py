@@ -112,14 +112,12 @@ class WaterTechnique:
         return screen + self._light.nbytes + bodies + pictures + (self._glow.nbytes if self._glow is not None else 0)
 
     def prepare(self, items: Sequence[Water], surroundings: Surroundings) -> None:
-        """Make waves resident that are new, and write the parameters of every body of water."""
+        """Make waves resident that are new; parameters are written when waves are moved to a time."""
         before = list(self.bodies)
         self.bodies = [self._body(item, before, number) for number, item in enumerate(items)]
-        for body in self.bodies:
-            self._write(body)
 
     def simulate(self, time_s: float) -> None:
-        """Move the waves to a time."""
+        """Move the waves to a time, and write the parameters of every body of water."""
         for body in self.bodies:
             surfaces = surfaces_of(body.item.waves, time_s)
             body.time_s = time_s
@@ -219,6 +217,8 @@ class WaterTechnique:
         return constants if len(self.bodies) > 1 or constants["ACROSS_GLASS"] else {}
 
     def _body(self, item: Water, before: list[Body], number: int) -> Body:
+        if number < len(before) and before[number].item is item:
+            return before[number]
         quality = quality_of(item.technique, item.quality)
         same = next((b for b in before if b.item.waves is item.waves), None)
         if same is not None:
