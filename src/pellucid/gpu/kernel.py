@@ -92,7 +92,7 @@ def _entry(device: Device, b: Binding, stages: int, nearest: Sequence[str]) -> d
             entry["visibility"] = stages & ~wgpu.ShaderStage.VERTEX
         entry["buffer"] = {"type": "storage" if writable else "read-only-storage"}
     elif b.type == "sampler":
-        entry["sampler"] = {"type": "filtering"}
+        entry["sampler"] = {"type": "non-filtering" if b.name in nearest else "filtering"}
     elif b.type == "sampler_comparison":
         entry["sampler"] = {"type": "comparison"}
     elif match := re.match(r"texture_storage_(\w+)<(\w+),(\w+)>", b.type):
@@ -119,7 +119,7 @@ class ComputeKernel:
     ----------
     module : path of the WGSL module under the package, without the suffix; or an assembled one.
     constants : values of its `override` constants.
-    nearest : names of textures that hold 32-bit floats and are only read texel by texel.
+    nearest : names of textures that hold 32-bit floats and are only read texel by texel, and of samplers of them.
 
     Raises
     ------

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 HIT_FORMAT = "rgba32float"
 WAVE_NAMES = ("wave_map", "wave_sampler", "wave_moments", "wave_texture", "moments_texture")
 NONE = [(0.0, 0.0, 0.0, 0.0)]
-NEAREST = ("water_hits", "water_squares", "opaque_color", "picture_depths")
+NEAREST = ("water_hits", "water_squares", "opaque_color", "picture_depths", "picture_sampler")
 
 
 @dataclass
@@ -309,4 +309,7 @@ def _absent(device: Device) -> dict[str, Any]:
     image = device.texture(size=(1, 1), format="rgba16float", label="absent")
     stack = image.create_view(dimension="2d-array")
     names = ("wave_moments", "picture_colors", "picture_depths")
-    return {name: stack for name in names} | {"view_sampler": device.sampler("linear", "clamp")}
+    return {name: stack for name in names} | {
+        "view_sampler": device.sampler("linear", "clamp"),
+        "picture_sampler": device.sampler("nearest", "clamp"),
+    }

@@ -70,7 +70,9 @@ class PictureQuery:
         key = ("picture query", entry)
         if key not in self.device.cache:
             module = "techniques/water/shaders/picture_query"
-            self.device.cache[key] = ComputeKernel(self.device, module, entry=entry, nearest=("picture_depths",))
+            self.device.cache[key] = ComputeKernel(
+                self.device, module, entry=entry, nearest=("picture_depths", "picture_sampler")
+            )
         found = self.device.buffer(QueryHit.itemsize * len(rays), label="picture hits")
         own = {"picture_rays": self.device.buffer(rays, label="picture rays"), "picture_hits": found}
         self.device.cache[key].run(

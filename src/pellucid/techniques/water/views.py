@@ -45,6 +45,7 @@ class SurfacePictures:
         self.views: tuple[View | None, View | None] = (None, None)
         self._scenes = [SceneView(device, self.format) for _ in LABELS]
         self._params = device.buffer(WaterViews.itemsize, "uniform", "water views")
+        self._sampler = device.sampler("nearest", "clamp")
         self._colors: Any = None
         self._depths: Any = None
         self._stacks: list[Any] = []
@@ -54,7 +55,11 @@ class SurfacePictures:
     @property
     def bindings(self) -> dict[str, Any]:
         """Resources of bind group 0 by their WGSL names; empty before anything was drawn."""
-        return {**dict(zip(NAMES, self._stacks, strict=False)), "water_views": self._params}
+        return {
+            **dict(zip(NAMES, self._stacks, strict=False)),
+            "water_views": self._params,
+            "picture_sampler": self._sampler,
+        }
 
     @property
     def nbytes(self) -> int:

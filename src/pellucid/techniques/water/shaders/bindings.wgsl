@@ -9,6 +9,7 @@
 @group(0) @binding(4) var water_hits: texture_2d<f32>;  // what the search found, see hit.wgsl
 @group(0) @binding(5) var picture_colors: texture_2d_array<f32>;  // of what lies below the surface, above it
 @group(0) @binding(6) var picture_depths: texture_2d_array<f32>;  // reversed
+@group(0) @binding(7) var picture_sampler: sampler;
 @group(0) @binding(9) var view_sampler: sampler;
 @group(0) @binding(10) var<uniform> water_views: WaterViews;
 @group(0) @binding(11) var opaque_color: texture_2d<f32>;  // what was drawn before

@@ -35,14 +35,10 @@ fn picture_depth(layer: u32, uv: vec2f) -> f32 {
 fn picture_depth_between(layer: u32, uv: vec2f) -> f32 {
     let last = vec2f(textureDimensions(picture_depths)) - 1.0;
     let at = clamp(uv * (last + 1.0) - 0.5, vec2f(0.0), last);
-    let low = vec2i(at);
-    let high = min(low + 1, vec2i(last));
-    let share = fract(at);
-    let top = mix(textureLoad(picture_depths, low, layer, 0).r,
-        textureLoad(picture_depths, vec2i(high.x, low.y), layer, 0).r, share.x);
-    let bottom = mix(textureLoad(picture_depths, vec2i(low.x, high.y), layer, 0).r,
-        textureLoad(picture_depths, high, layer, 0).r, share.x);
-    return mix(top, bottom, share.y);
+    let low = floor(at);
+    let share = at - low;
+    let four = textureGather(0, picture_depths, picture_sampler, (low + 1.0) / (last + 1.0), layer);
+    return mix(mix(four.w, four.z, share.x), mix(four.x, four.y, share.x), share.y);
 }
 
 // Metres along the axis of the camera

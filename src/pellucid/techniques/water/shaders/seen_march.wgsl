@@ -6,11 +6,14 @@ const MARCH_STRIDE = 3.0;      // texels that a step passes at least
 const MARCH_THICKNESS = 0.02;  // of the depth: a ray that is farther behind what is shown has passed behind it
 const MARCH_STEEPENING = 2.0;
 const MARCH_SECANTS = 2u;
+const MARCH_NARROWINGS = 14u;  // secants, and halvings of the longest step that a picture of 8192 texels has
+const MARCH_EXACT = 0.1;       // texels that a place may be off before the last false position
 const MARCH_FAR_M = 1e4;
 const MARCH_BEYOND = 1.05;     // of the way to where meshes end: a level bottom ends them all just there
 
-// (x, y, reversed depth) run straight through the picture. Steps look for the first texel in front of the ray; halving
-// finds it to a texel, and false position between texels the rest. What lies far in front of the ray was passed behind.
+// (x, y, reversed depth) run straight through the picture. Steps look for the first texel in front of the ray; false
+// position finds where it meets a surface that goes on between two steps, halving where that ends, to a texel. What lies
+// far in front of the ray there was passed behind.
 fn seen_march(layer: u32, p_ws: vec3f, direction_ws: vec3f) -> PicturePlace {
     let begin = picture_clip(layer, p_ws);
     let along = water_views.clip_from_world[layer] * vec4f(direction_ws, 0.0);
@@ -26,23 +29,25 @@ fn seen_march(layer: u32, p_ws: vec3f, direction_ws: vec3f) -> PicturePlace {
     let texels = length((to_at.xy - from_at.xy) * vec2f(textureDimensions(picture_depths)));
     let steps = clamp(ceil(texels / MARCH_STRIDE), 2.0, f32(water.march_steps));
     let texel = 1.0 / max(texels, 1.0);
-    let halvings = u32(ceil(log2(max(texels / steps, 1.0)))) + 1u;
-    var ends = vec2f(0.0);  // in front, behind
+    var bracket = MarchBracket(vec2f(0.0), vec2f(0.0), false);
     var s = 0.0;
     var passed = false;     // behind something
     var first = -1.0;       // where it was passed
     var found = false;
-    // A software driver executes every branch of a loop for all pixels: so one loop looks, one halves, and what is
-    // rarely done once more is a loop round both.
+    // A software driver executes every branch of a loop for all pixels, and one turn of every loop: so one loop looks,
+    // one finds, and what is rarely done once more is a loop round both.
     for (var tries = 0u; tries < MARCH_TRIES; tries++) {
         for (var i = 0u; i <= u32(steps); i++) {
             let at = mix(from_at, to_at, s);
-            let behind = at.z <= picture_depth(layer, at.xy);
+            let gap = at.z - picture_depth_between(layer, at.xy);
+            let behind = gap <= 0.0;
             if behind && !passed {
+                bracket.gaps.y = gap;
                 break;
             }
             passed = behind;
-            ends.x = select(s, ends.x, behind);
+            bracket.ends.x = select(s, bracket.ends.x, behind);
+            bracket.gaps.x = select(gap, bracket.gaps.x, behind);
             if s >= 1.0 {
                 s = 2.0;
                 break;
@@ -52,25 +57,17 @@ fn seen_march(layer: u32, p_ws: vec3f, direction_ws: vec3f) -> PicturePlace {
         if s > 1.0 {
             break;
         }
-        ends.y = s;
-        for (var i = 0u; i < halvings; i++) {
-            let middle = 0.5 * (ends.x + ends.y);
-            let at = mix(from_at, to_at, middle);
-            let behind = at.z <= picture_depth(layer, at.xy);
-            ends = select(vec2f(middle, ends.y), vec2f(ends.x, middle), behind);
-        }
-        found = march_meets(layer, from_at, to_at, ends, texel);
+        bracket.ends.y = s;
+        bracket = march_narrowed(layer, from_at, to_at, bracket, texel);
+        found = bracket.meets || march_meets(layer, from_at, to_at, bracket, texel);
         if found {
             break;
         }
-        first = select(first, ends.y, first < 0.0);
+        first = select(first, bracket.ends.y, first < 0.0);
         passed = true;
         s = min(s + 1.0 / steps, 1.0);
     }
-    s = select(select(1.0, first, first >= 0.0), ends.y, found);
-    if found {
-        s = march_refined(layer, from_at, to_at, ends);
-    }
+    s = select(select(1.0, first, first >= 0.0), march_between(bracket), found);
     // Metres are not linear in the picture, their reciprocals are.
     let t = t_end * s * begin.w / mix(end.w, begin.w, s);
     let open = select(PICTURE_UNKNOWN, PICTURE_NOTHING, first < 0.0 && !passed && reach <= border);
@@ -78,40 +75,51 @@ fn seen_march(layer: u32, p_ws: vec3f, direction_ws: vec3f) -> PicturePlace {
     return PicturePlace(mix(from_at, to_at, s).xy, t, select(nothing, PICTURE_SOMETHING, found));
 }
 
-// Whether a ray that is in front at `ends.x` and behind at `ends.y` met the surface there: not where that is nearer by
-// far than the ray ever was, unless it goes on as steeply a texel farther, or the ray had all but met what was before
-fn march_meets(layer: u32, from_at: vec3f, to_at: vec3f, ends: vec2f, texel: f32) -> bool {
-    let ray = picture_metres(layer, mix(from_at.z, to_at.z, ends.x));
-    let shown = picture_metres(layer, picture_depth(layer, mix(from_at.xy, to_at.xy, ends.y)));
-    let next = picture_metres(layer, picture_depth(layer, mix(from_at.xy, to_at.xy, ends.y + 1.5 * texel)));
-    let before = picture_metres(layer, picture_depth(layer, mix(from_at.xy, to_at.xy, ends.x)));
+// Where a ray is in front of what the picture shows, and where behind it: shares of its way, differences of depth
+struct MarchBracket {
+    ends: vec2f,
+    gaps: vec2f,
+    meets: bool,  // an end is in the surface
+}
+
+// False position twice, which finds a surface that goes on; then halves, down to a texel
+fn march_narrowed(layer: u32, from_at: vec3f, to_at: vec3f, bracket: MarchBracket, texel: f32) -> MarchBracket {
+    var b = bracket;
+    for (var k = 0u; k < MARCH_NARROWINGS; k++) {
+        let even = k < MARCH_SECANTS;
+        let middle = select(0.5 * (b.ends.x + b.ends.y), march_between(b), even);
+        let at = mix(from_at, to_at, middle);
+        let gap = at.z - picture_depth_between(layer, at.xy);
+        let behind = gap <= 0.0;
+        // What is left of the gap, over its change, tells how far off that is.
+        let off = abs(gap) * (b.ends.y - b.ends.x) / max(b.gaps.x - b.gaps.y, 1e-12);
+        b.ends = select(vec2f(middle, b.ends.y), vec2f(b.ends.x, middle), behind);
+        b.gaps = select(vec2f(gap, b.gaps.y), vec2f(b.gaps.x, gap), behind);
+        b.meets = even && off <= MARCH_EXACT * texel && bracket.ends.x < bracket.ends.y;
+        if b.meets || b.ends.y - b.ends.x <= texel {
+            break;
+        }
+    }
+    return b;
+}
+
+fn march_between(b: MarchBracket) -> f32 {
+    let share = b.gaps.x / max(b.gaps.x - b.gaps.y, 1e-12);
+    return mix(b.ends.x, b.ends.y, saturate(share));
+}
+
+// Whether a ray met the surface at a bracket of a texel: not where that is nearer by far a texel on than the ray ever
+// was, unless it goes on as steeply farther, or the ray had all but met what was before. Between two texels that are no
+// one surface there is none to meet.
+fn march_meets(layer: u32, from_at: vec3f, to_at: vec3f, b: MarchBracket, texel: f32) -> bool {
+    let ray = picture_metres(layer, mix(from_at.z, to_at.z, b.ends.x));
+    let before = picture_metres(layer, picture_depth(layer, mix(from_at.xy, to_at.xy, b.ends.x - 0.5 * texel)));
+    let shown = picture_metres(layer, picture_depth(layer, mix(from_at.xy, to_at.xy, b.ends.y + 0.5 * texel)));
+    let next = picture_metres(layer, picture_depth(layer, mix(from_at.xy, to_at.xy, b.ends.y + 2.0 * texel)));
     let most = MARCH_THICKNESS * ray;
     let meets = ray - shown <= most + MARCH_STEEPENING * abs(shown - next) || before - ray <= most;
     // What hides the very start lies between the camera and the surface, on the other side of it.
-    return ends.x < ends.y && meets;
-}
-
-// Secants between four texels each, which the ends need not lie on two sides of
-fn march_refined(layer: u32, from_at: vec3f, to_at: vec3f, ends: vec2f) -> f32 {
-    let width = max(ends.y - ends.x, 1e-7);
-    var at = ends;
-    var gap = vec2f(march_gap(layer, from_at, to_at, at.x), march_gap(layer, from_at, to_at, at.y));
-    var s = ends.y;
-    for (var i = 1u; i <= MARCH_SECANTS; i++) {
-        let slope = gap.x - gap.y;
-        s = select(s, mix(at.x, at.y, gap.x / slope), abs(slope) > 1e-12);
-        s = clamp(s, max(ends.x - width, 0.0), min(ends.y + width, 1.0));
-        if i < MARCH_SECANTS {
-            at = vec2f(at.y, s);
-            gap = vec2f(gap.y, march_gap(layer, from_at, to_at, s));
-        }
-    }
-    return s;
-}
-
-fn march_gap(layer: u32, from_at: vec3f, to_at: vec3f, s: f32) -> f32 {
-    let at = mix(from_at, to_at, s);
-    return at.z - picture_depth_between(layer, at.xy);
+    return b.ends.x < b.ends.y && meets;
 }
 
 // Metres to where all meshes end in height
