@@ -47,25 +47,30 @@ def interface_sweep() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 COS_I, N_I, N_T = interface_sweep()
-Q_SQUARED = (N_T - N_I) * (N_T + N_I) + (N_I * COS_I) ** 2
+Q_SQUARED = optics.normal_momentum_squared(COS_I, N_I, N_T)
+TERMS = np.abs((N_T - N_I) * (N_T + N_I)) + (N_I * COS_I) ** 2
 
 
 def share_conditioning() -> np.ndarray:
     """How far rounding q^2 by EPS of its terms moves q = n_t cos_t, relative to n_i; large at the critical angle."""
-    terms = np.abs((N_T - N_I) * (N_T + N_I)) + (N_I * COS_I) ** 2
-    return terms / np.maximum(np.sqrt(np.abs(Q_SQUARED)), np.sqrt(EPS * terms) + 1e-12)
+    return TERMS / np.maximum(np.sqrt(np.abs(Q_SQUARED)), np.sqrt(EPS * TERMS) + 1e-12)
 
 
 def decided() -> np.ndarray:
     """Rows whose side of the critical angle survives rounding; the others may fall either way."""
-    terms = np.abs((N_T - N_I) * (N_T + N_I)) + (N_I * COS_I) ** 2
-    return np.abs(Q_SQUARED) >= 8 * EPS * terms
+    return np.abs(Q_SQUARED) >= 8 * EPS * TERMS
 
 
 def probed(device: Device, module: str, function: str, *arrays: Any) -> np.ndarray:
     from pellucid.gpu.probe import probe
 
     return probe(f"optics/{module}", function, *arrays, device=device)
+
+
+def test_normal_momentum(device: Device) -> None:
+    found = probed(device, "normal_momentum", "normal_momentum_squared", COS_I, N_I, N_T)
+    # Either term is rounded three times, and their sum once.
+    assert np.all(np.abs(found - Q_SQUARED) <= 4 * EPS * TERMS)
 
 
 @pytest.mark.parametrize("function", ["fresnel_dielectric", "fresnel_schlick"])

@@ -7,6 +7,7 @@ from pellucid.optics import (
     dispersion,
     eikonal,
     fresnel,
+    normal_momentum,
     phase,
     refraction_factor,
     snell,
@@ -60,6 +61,7 @@ from pellucid.optics.fresnel import (
     normal_reflectance,
     schlick,
 )
+from pellucid.optics.normal_momentum import normal_momentum_squared
 from pellucid.optics.phase import henyey_greenstein
 from pellucid.optics.refraction_factor import exact_factor, fitted_factor, opposite_factor, refract_by_factor
 from pellucid.optics.snell import RefractResult, critical_angle, reflect, refract
@@ -109,6 +111,8 @@ __all__ = [
     "luminance",
     "momentum_of_ray",
     "normal_flux",
+    "normal_momentum",
+    "normal_momentum_squared",
     "normal_reflectance",
     "opposite_factor",
     "ordinary_field",

@@ -7,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pellucid.optics.normal_momentum import normal_momentum_squared
+
 # Smallest denominator: turns 0/0 (equal indices at grazing incidence) into the limit, 0. Larger than
 # cosines whose square underflows, also in the single precision of the twin
 _TINY = 1e-15
@@ -42,7 +44,7 @@ def fresnel_polarised(cos_i: ArrayLike, n_i: ArrayLike, n_t: ArrayLike) -> Polar
     """
     c = np.clip(np.asarray(cos_i, float), 0.0, 1.0)
     n_i, n_t = np.asarray(n_i, float), np.asarray(n_t, float)
-    q_squared = (n_t - n_i) * (n_t + n_i) + (n_i * c) ** 2
+    q_squared = normal_momentum_squared(c, n_i, n_t)
     q = np.sqrt(np.maximum(q_squared, 0.0))
     r_s = (n_i * c - q) / np.maximum(n_i * c + q, _TINY)
     r_p = (n_t * n_t * c - n_i * q) / np.maximum(n_t * n_t * c + n_i * q, _TINY)
@@ -117,7 +119,7 @@ def fresnel_schlick(cos_i: ArrayLike, n_i: ArrayLike, n_t: ArrayLike) -> NDArray
     """
     c = np.clip(np.asarray(cos_i, float), 0.0, 1.0)
     n_i, n_t = np.asarray(n_i, float), np.asarray(n_t, float)
-    q_squared = (n_t - n_i) * (n_t + n_i) + (n_i * c) ** 2
+    q_squared = normal_momentum_squared(c, n_i, n_t)
     cosine = np.where(n_i > n_t, np.sqrt(np.maximum(q_squared, 0.0)) / n_t, c)
     return schlick(normal_reflectance(n_i, n_t), cosine, 5.0)
 

@@ -1,5 +1,6 @@
 // How much light a smooth interface between two dielectrics reflects. cos_i is clamped to [0, 1],
 // indices are > 0. Twin of fresnel.py.
+//!import optics/normal_momentum
 
 struct PolarisedReflectance {
     s: f32,  // rs^2, electric field perpendicular to the plane of incidence
@@ -11,11 +12,10 @@ struct PolarisedReflectance {
 const FRESNEL_TINY = 1e-15;
 
 // Fresnel's formulae, rs^2 and rp^2 [born1999, 1.5.2 and 1.5.3]; both 1 under total reflection.
-// q = n_t cos_t keeps equal indices from reflecting anything, and needs no n_i/n_t,
-// whose division a GPU may round away from 1.
+// With q = n_t cos_t equal indices reflect nothing at any angle.
 fn fresnel_polarised(cos_i: f32, n_i: f32, n_t: f32) -> PolarisedReflectance {
     let c = saturate(cos_i);
-    let q_squared = (n_t - n_i) * (n_t + n_i) + n_i * c * (n_i * c);
+    let q_squared = normal_momentum_squared(c, n_i, n_t);
     if q_squared < 0.0 {
         return PolarisedReflectance(1.0, 1.0);
     }
@@ -46,7 +46,7 @@ fn schlick(f0: f32, cosine: f32, exponent: f32) -> f32 {
 // transmitted angle, hence 1 under total reflection. Error: see fresnel.py
 fn fresnel_schlick(cos_i: f32, n_i: f32, n_t: f32) -> f32 {
     let c = saturate(cos_i);
-    let q_squared = (n_t - n_i) * (n_t + n_i) + n_i * c * (n_i * c);
+    let q_squared = normal_momentum_squared(c, n_i, n_t);
     let cosine = select(c, sqrt(max(q_squared, 0.0)) / n_t, n_i > n_t);
     return schlick(normal_reflectance(n_i, n_t), cosine, 5.0);
 }

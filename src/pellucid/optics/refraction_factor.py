@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pellucid.optics.normal_momentum import normal_momentum_squared
 from pellucid.optics.snell import RefractResult
 
 
@@ -50,7 +51,7 @@ def exact_factor(cos_i: ArrayLike, n_i: ArrayLike, n_t: ArrayLike) -> NDArray[np
     """
     c = np.clip(np.asarray(cos_i, float), 0.0, 1.0)
     n_i, n_t = np.asarray(n_i, float), np.asarray(n_t, float)
-    q_squared = (n_t - n_i) * (n_t + n_i) + (n_i * c) ** 2
+    q_squared = normal_momentum_squared(c, n_i, n_t)
     return np.asarray(np.sqrt(np.maximum(q_squared, 0.0)) / n_i - c)
 
 

@@ -1,5 +1,6 @@
 // Refraction by a factor instead of an angle [oliveira2000b, eq. 8]; Snell's law is the same with a factor that depends
 // on the angle of incidence. Twin of refraction_factor.py.
+//!import optics/normal_momentum
 //!import optics/snell
 
 // d - k n of unit length [oliveira2000b, eq. 8]; not valid where it does not pass the surface
@@ -12,7 +13,7 @@ fn refract_by_factor(direction: vec3f, normal: vec3f, factor: f32) -> RefractRes
 // (n_t cos_t - n_i cos_i) / n_i: Snell's law [born1999, 1.5.1] as a factor; -cos_i under total reflection
 fn exact_factor(cos_i: f32, n_i: f32, n_t: f32) -> f32 {
     let c = saturate(cos_i);
-    let q_squared = (n_t - n_i) * (n_t + n_i) + n_i * c * (n_i * c);
+    let q_squared = normal_momentum_squared(c, n_i, n_t);
     return sqrt(max(q_squared, 0.0)) / n_i - c;
 }
 

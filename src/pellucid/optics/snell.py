@@ -11,6 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pellucid.optics.normal_momentum import normal_momentum_squared
+
 
 class RefractResult(NamedTuple):
     """Refracted direction and whether there is one.
@@ -59,7 +61,7 @@ def refract(direction: ArrayLike, normal: ArrayLike, n_i: ArrayLike, n_t: ArrayL
     d, n = np.asarray(direction, float), np.asarray(normal, float)
     n_i, n_t = np.asarray(n_i, float)[..., None], np.asarray(n_t, float)[..., None]
     c = -np.sum(d * n, axis=-1, keepdims=True)
-    q_squared = (n_t - n_i) * (n_t + n_i) + (n_i * c) ** 2
+    q_squared = normal_momentum_squared(c, n_i, n_t)
     q = np.sqrt(np.maximum(q_squared, 0.0))
     refracted = (n_i * (d + c * n) - q * n) / n_t
     valid = q_squared >= 0.0

@@ -2,6 +2,7 @@
 // (direction . normal < 0), both unit. Twin of snell.py. `reflect` and `refract` replace the
 // WGSL built-ins in every module that imports this one: those return a zero vector under total
 // reflection, which no later stage could tell from a direction.
+//!import optics/normal_momentum
 
 struct RefractResult {
     direction: vec3f,  // unit; the incident direction, unchanged, where valid is false
@@ -18,7 +19,7 @@ fn reflect(direction: vec3f, normal: vec3f) -> vec3f {
 // in which nothing cancels when the indices are close, or equal at grazing incidence.
 fn refract(direction: vec3f, normal: vec3f, n_i: f32, n_t: f32) -> RefractResult {
     let c = -dot(direction, normal);
-    let q_squared = (n_t - n_i) * (n_t + n_i) + n_i * c * (n_i * c);
+    let q_squared = normal_momentum_squared(c, n_i, n_t);
     if q_squared < 0.0 {
         return RefractResult(direction, false);
     }
