@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -28,6 +27,7 @@ import numpy as np
 import OpenImageIO
 from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation
+from timed import timed
 
 from pellucid.techniques.eikonal.reference import (
     Convex,
@@ -273,13 +273,6 @@ def lamp_pixels(size: tuple[int, int], finer: int = 6) -> NDArray[np.bool_]:
         seen[np.nonzero(hit)[0][group.name[lit]]] = True
     picture = seen.reshape(size[1], finer, size[0], finer).any((1, 3))
     return np.asarray(binary_dilation(picture))
-
-
-def timed(make: Callable[[], Image]) -> tuple[Image, float]:
-    """A picture and the seconds of processor time that it took, of all threads."""
-    start = time.process_time()
-    picture = make()
-    return picture, time.process_time() - start
 
 
 def compared(scene: str, size: tuple[int, int], samples: int, resolution: int) -> dict[str, Any]:

@@ -20,8 +20,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from compare_mitsuba_relief import Image, timed
+from compare_mitsuba_relief import Image
 from compare_povray import compare, srgb, write_image
+from timed import timed
 
 RIM_M = 1.2  # ground around the pool
 SIZE_M, DEPTH_M, CELLS = (2.4, 1.8), 0.7, (192, 256)  # x and z; (rows, columns)

@@ -13,14 +13,13 @@ from __future__ import annotations
 
 import argparse
 import json
-import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from compare_povray import compare, srgb, write_image
 from numpy.typing import NDArray
+from timed import timed
 
 Image = NDArray[np.float32]
 
@@ -141,13 +140,6 @@ def pellucid_picture(size: tuple[int, int], samples: int, caustics: bool) -> Ima
     camera = pl.Camera(position=CAMERA, target=TARGET, fov_deg=FOV_DEG)
     scene = pl.Scene(camera, pl.Environment.constant(SKY), [lamp], [item], tone_mapping="linear")
     return np.asarray(pl.render(scene, size=size, samples=samples).radiance, dtype=np.float32)
-
-
-def timed(make: Callable[[], Image]) -> tuple[Image, float]:
-    """A picture and the seconds of processor time that it took, of all threads."""
-    start = time.process_time()
-    picture = make()
-    return picture, time.process_time() - start
 
 
 def main() -> None:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import importlib.util
-import sys
+import importlib
 from types import ModuleType
 
 import numpy as np
@@ -18,12 +17,9 @@ SIZE = (64, 48)
 def comparison() -> ModuleType:
     """tools/compare_mitsuba.py."""
     pytest.importorskip("mitsuba")
-    spec = importlib.util.spec_from_file_location("compare_mitsuba", ROOT / "tools" / "compare_mitsuba.py")
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["compare_mitsuba"] = module  # its dataclasses look themselves up there
-    spec.loader.exec_module(module)
-    return module
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(ROOT / "tools"))
+        return importlib.import_module("compare_mitsuba")
 
 
 @pytest.mark.slow

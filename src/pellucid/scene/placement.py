@@ -5,11 +5,15 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from pellucid import media
 from pellucid.scene import checks
+
+if TYPE_CHECKING:
+    from pellucid.media import Medium
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +62,23 @@ class SceneObject(Value):
     def object_to_world(self) -> np.ndarray:
         """(4, 4) float64: maps the object's own coordinates, as columns, to the world in metres."""
         return placement_matrix(self.position, self.rotation, self.scale)
+
+
+class Filled(SceneObject):
+    """Base of objects with a layer of some medium, whose absorption may be given apart from it."""
+
+    medium: str | Medium | float
+    absorption: checks.Vector | None
+
+    @property
+    def matter(self) -> Medium:
+        """The medium of the layer."""
+        return media.resolve(self.medium)
+
+    @property
+    def absorption_per_m(self) -> checks.Vector:
+        """Absorption that counts: the one given, else that of the medium."""
+        return self.matter.absorption_per_m if self.absorption is None else self.absorption
 
 
 def rotation_matrix(rotation_deg: checks.Vector) -> np.ndarray:

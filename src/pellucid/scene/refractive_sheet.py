@@ -14,7 +14,7 @@ from pellucid import media
 from pellucid.errors import AssetError, SceneError
 from pellucid.scene import checks
 from pellucid.scene.mesh import Mesh
-from pellucid.scene.placement import SceneObject, check_placement, store
+from pellucid.scene.placement import Filled, check_placement, store
 from pellucid.scene.sphere_maps import RULES
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ MOST_TEXELS = 8192
 
 
 @dataclass(frozen=True, eq=False)
-class RefractiveSheet(SceneObject):
+class RefractiveSheet(Filled):
     """A surface in motion, and `depth_m` below its level a flat picture that is seen through it [oliveira2000b].
 
     In its own coordinates the sheet is level at y = 0, the picture lies at y = -depth_m and is as large as the sheet in
@@ -138,16 +138,6 @@ class RefractiveSheet(SceneObject):
         own: dict[str, Any] = {"refraction": "approximate", "per": "vertex", "absorption": (0.0, 0.0, 0.0)}
         mirrored = {"reflection": "sphere_map", "blend": 0.3} if "sphere_map" in look else {"reflection": "none"}
         return cls(picture, **(own | mirrored | look))
-
-    @property
-    def matter(self) -> Medium:
-        """The medium below the sheet."""
-        return media.resolve(self.medium)
-
-    @property
-    def absorption_per_m(self) -> tuple[float, float, float]:
-        """Absorption that counts: the one given, else that of the medium."""
-        return self.matter.absorption_per_m if self.absorption is None else self.absorption
 
     @property
     def is_dynamic(self) -> bool:

@@ -14,7 +14,7 @@ from pellucid import media
 from pellucid.errors import AssetError, SceneError
 from pellucid.scene import checks
 from pellucid.scene.mesh import Mesh
-from pellucid.scene.placement import SceneObject, Value, check_placement, store
+from pellucid.scene.placement import Filled, Value, check_placement, store
 from pellucid.scene.relief_quality import STEPS, TECHNIQUES, ReliefQuality
 
 if TYPE_CHECKING:
@@ -142,7 +142,7 @@ class ReliefLayer(Value):
 
 
 @dataclass(frozen=True, eq=False)
-class ReliefSurface(SceneObject):
+class ReliefSurface(Filled):
     """A mesh whose surface has depth, and may be covered with something translucent.
 
     Where the translucent layer is higher than the solid one, its matter fills what is between; elsewhere there is
@@ -280,16 +280,6 @@ class ReliefSurface(SceneObject):
         """Whether there is a translucent layer, and the technique draws it."""
         step = self.technique.removesuffix("_thesis")
         return self.translucent is not None and STEPS.index(step) >= STEPS.index("two_layer")
-
-    @property
-    def matter(self) -> Medium:
-        """The medium of the translucent layer."""
-        return media.resolve(self.medium)
-
-    @property
-    def absorption_per_m(self) -> tuple[float, float, float]:
-        """Absorption that counts: the one given, else that of the medium."""
-        return self.matter.absorption_per_m if self.absorption is None else self.absorption
 
 
 def _tiled(look: dict[str, Any], tiles: tuple[float, float]) -> dict[str, Any]:

@@ -10,7 +10,8 @@ import numpy.typing as npt
 
 from pellucid.errors import SceneError
 from pellucid.fields.landscape.patch import Patch
-from pellucid.fields.textures.maps import number, ramp
+from pellucid.fields.numbers import number
+from pellucid.fields.textures.maps import ramp
 from pellucid.fields.textures.noise import octaves
 
 Values = npt.NDArray[np.float64]

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from pellucid.errors import SceneError
+from pellucid.fields.numbers import number
 from pellucid.fields.sessile import PLUNGE, check_angle, meniscus, merge, rims_of
 
-from .maps import Maps, color, grid, number, places
+from .maps import Maps, color, grid, places
 from .noise import octaves
 
 #: Texels outside of a rim over which the surface goes on at the contact angle.

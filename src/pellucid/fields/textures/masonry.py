@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from pellucid.errors import SceneError
+from pellucid.fields.numbers import number
 
-from .maps import Maps, Values, averaged, color, grid, mixed, number, ramp, whole
+from .maps import Maps, Values, averaged, color, grid, mixed, ramp, whole
 from .noise import octaves, voronoi
 
 

@@ -6,7 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .maps import Maps, Values, averaged, color, grid, mixed, number, places, ramp, whole
+from pellucid.fields.numbers import number
+
+from .maps import Maps, Values, averaged, color, grid, mixed, places, ramp, whole
 from .noise import octaves, scattered, voronoi
 
 

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from pellucid.errors import SceneError
+from pellucid.fields.numbers import number
 from pellucid.fields.waves import arguments
-from pellucid.fields.waves.arguments import number
 from pellucid.fields.waves.disturbances import Disturbance, Push, places_of
 from pellucid.fields.waves.source import WaveSource, WaveSurface, difference_slopes
 
