@@ -70,3 +70,9 @@ def wgsl_struct(name: str, dtype: np.dtype) -> str:
         raise ValueError(f"{name}: the dtype was not made by pellucid.gpu.layout.struct")
     members = ", ".join(f"{field}: {kind}" for field, kind in dtype.metadata["wgsl"])
     return f"struct {name} {{ {members} }}"
+
+
+def offset_of(layout: np.dtype, field: str) -> int:
+    """Bytes from the beginning of a struct to one of its fields."""
+    assert layout.fields is not None
+    return layout.fields[field][1]

@@ -16,11 +16,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellucid.gpu.kernel import ComputeKernel, RenderPass
+from pellucid.gpu.layout import offset_of
 from pellucid.scene import DirectionalLight
 from pellucid.surroundings.layouts import MAX_WATER_LIGHTS
 from pellucid.surroundings.submersion import DEPTH_FORMAT, WaterRegion, refracted_slope
 from pellucid.techniques.water.lamp_parts import lamp_in_parts, lifted, towards
-from pellucid.techniques.water.layouts import CausticBeam, CausticParams
+from pellucid.techniques.water.layouts import CausticBeam, CausticParams, WaterParams
 from pellucid.techniques.water.near_lamps import is_over, near_lamp_parts, near_lamps
 from pellucid.techniques.water.photons import Tracer
 
@@ -107,7 +108,10 @@ class WaterLight:
         for number, body in enumerate(bodies):
             if body.params["region"] != number:
                 body.params["region"] = number
-                self.device.write(body.bindings["water"], body.params.reshape(1))
+                # This alone: the device may know better what hangs on its waves.
+                self.device.write(
+                    body.bindings["water"], body.params["region"].reshape(1), offset_of(WaterParams, "region")
+                )
         channels = max(channel_count(body) for body in bodies)
         if any(body.quality.god_rays for body in bodies):
             channels = max(channels, 2)  # room for the sums of slices

@@ -39,6 +39,15 @@ WaterParams = struct(
     ]
 )
 
+# Ripples that the device makes a layer of waves from, see ripple_maps.py.
+RippleMap = struct(
+    [
+        ("cell_m", "vec2f"),
+        ("repeats", "u32"),
+        ("others", "vec3f"),  # steepest slope, trough and crest of the other layers
+    ]
+)
+
 # Cameras whose pictures stand for the scene: below the surface, above it.
 WaterViews = struct(
     [

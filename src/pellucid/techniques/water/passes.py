@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,8 +25,9 @@ from pellucid.techniques.water.borders import OpenBorder
 from pellucid.techniques.water.caustics import WaterLight
 from pellucid.techniques.water.glow import WaterGlow
 from pellucid.techniques.water.layouts import WaterParams, WaterViews
-from pellucid.techniques.water.prepare import WaveMaps, parameters, same_surfaces, surfaces_of, wave_maps
+from pellucid.techniques.water.prepare import WaveMaps, parameters, same_surfaces, sources_of, surfaces_of, wave_maps
 from pellucid.techniques.water.region import Rectangle, covered
+from pellucid.techniques.water.ripple_maps import RippleMaps, ripples_for_device
 from pellucid.techniques.water.views import SurfacePictures, hidden_box, needs_pictures, quality_seen_from
 from pellucid.techniques.water.wave_moments import moment_levels
 
@@ -53,6 +54,7 @@ class Body:
     waves : its surface at `time_s`. version : counts changes of the waves.
     bindings : resources of bind group 0 by their WGSL names.
     pictures : of what is below and above it, where its quality looks things up.
+    ripples : what works out a layer of its waves on the device.
     """
 
     item: Water
@@ -63,6 +65,7 @@ class Body:
     version: int = 0
     params: np.ndarray = field(default_factory=lambda: np.zeros((), WaterParams))
     pictures: SurfacePictures | None = None
+    ripples: RippleMaps | None = None
     border: OpenBorder = field(default_factory=OpenBorder)
 
     def constants(self, quality: WaterQuality, sides_by_rays: bool) -> dict[str, float]:
@@ -92,11 +95,14 @@ class WaterTechnique:
     Attributes
     ----------
     bodies : what was prepared last.
+    ripples_on_device : whether the device steps ripples, where nothing on the CPU asks for them; NumPy does that faster
+        than a software driver.
     """
 
     def __init__(self, device: Device) -> None:
         self.device = device
         self.bodies: list[Body] = []
+        self.ripples_on_device = not device.is_software
         self._passes: dict[Any, RenderPass] = {}
         self._targets: dict[str, Any] = {}
         self._nothing = _absent(device)
@@ -108,6 +114,7 @@ class WaterTechnique:
         """Bytes of GPU memory held."""
         screen = sum(t.width * t.height * (4 if t.format == DEPTH_FORMAT else 16) for t in self._targets.values())
         bodies = sum(body.waves.texels.nbytes + WaterParams.itemsize for body in self.bodies)
+        bodies += sum(body.ripples.nbytes for body in self.bodies if body.ripples is not None)
         pictures = sum(body.pictures.nbytes for body in self.bodies if body.pictures is not None)
         return screen + self._light.nbytes + bodies + pictures + (self._glow.nbytes if self._glow is not None else 0)
 
@@ -119,13 +126,25 @@ class WaterTechnique:
     def simulate(self, time_s: float) -> None:
         """Move the waves to a time, and write the parameters of every body of water."""
         for body in self.bodies:
-            surfaces = surfaces_of(body.item.waves, time_s)
+            ripples = body.ripples
+            surfaces = surfaces_of(body.item.waves, time_s, {ripples.layer: ripples} if ripples is not None else {})
             body.time_s = time_s
-            if not same_surfaces(surfaces, body.waves.surfaces):
-                body.waves = wave_maps(body.item, surfaces)
-                body.version += 1
-                self._upload(body)
+            moved = not same_surfaces(surfaces, body.waves.surfaces)
+            if moved:
+                self._move(body, surfaces)
             self._write(body)
+            if ripples is not None:
+                ripples.run(body.bindings["water"], time_s, moved)
+
+    def _move(self, body: Body, surfaces: tuple[Any, ...]) -> None:
+        body.version += 1
+        if body.ripples is not None and len(surfaces) == 1:
+            body.waves = replace(body.waves, surfaces=surfaces)  # the device has it all
+            return
+        body.waves = wave_maps(body.item, surfaces)
+        if body.ripples is not None:
+            body.waves = body.ripples.among(body.waves)
+        self._upload(body)
 
     def illuminate(self, lights: Sequence[Any], surroundings: Surroundings) -> None:
         """Light below the surface: maps of what comes through it, kept until something of that moves."""
@@ -220,14 +239,14 @@ class WaterTechnique:
         if number < len(before) and before[number].item is item:
             return before[number]
         quality = quality_of(item.technique, item.quality)
-        same = next((b for b in before if b.item.waves is item.waves), None)
+        layer = ripples_for_device(self.device, item, quality) if self.ripples_on_device else None
+        alike = (b for b in before if b.item.waves is item.waves and (b.ripples is None) == (layer is None))
+        same = next(alike, None)
         if same is not None:
             kept = {name: same.bindings[name] for name in WAVE_NAMES}
-            body = Body(item, quality, same.waves, kept, same.time_s, same.version)
+            body = Body(item, quality, same.waves, kept, same.time_s, same.version, ripples=same.ripples)
         else:
-            waves = wave_maps(item, surfaces_of(item.waves, 0.0))
-            body = Body(item, quality, waves, {"wave_sampler": self.device.sampler("linear", "repeat")})
-            self._upload(body)
+            body = self._new_body(item, quality, layer)
         if number < len(before):
             body.border = before[number].border
         old = before[number].bindings if number < len(before) else {}
@@ -238,13 +257,24 @@ class WaterTechnique:
             body.bindings[name] = old.get(name) or self.device.buffer(layout.itemsize, "uniform", name)
         return body
 
+    def _new_body(self, item: Water, quality: WaterQuality, layer: int | None) -> Body:
+        ripples = RippleMaps(self.device, sources_of(item.waves)[layer], layer) if layer is not None else None
+        waves = wave_maps(item, surfaces_of(item.waves, 0.0, {layer: ripples} if layer is not None else {}))
+        body = Body(item, quality, waves, {"wave_sampler": self.device.sampler("linear", "repeat")}, ripples=ripples)
+        self._upload(body)
+        if ripples is not None:
+            ripples.use(body.bindings["wave_texture"], body.bindings["moments_texture"])
+            body.waves = replace(ripples.among(waves), surfaces=())  # nothing was worked out yet
+        return body
+
     def _upload(self, body: Body) -> None:
         texels, moments = body.waves.texels, moment_levels(body.waves.texels)
         texture = body.bindings.get("wave_texture")
         layers, rows, columns = texels.shape[:3]
         if texture is None or tuple(texture.size) != (columns, rows, layers):
             kind = "rgba32float" if self.device.float32_filterable else "rgba16float"
-            texture = self.device.texture(size=(columns, rows), format=kind, layers=layers, label="waves")
+            usage = ("sample", "copy") if body.ripples is None else ("sample", "copy", "storage")
+            texture = self.device.texture(size=(columns, rows), format=kind, layers=layers, usage=usage, label="waves")
             body.bindings["wave_texture"] = texture
             body.bindings["wave_map"] = texture.create_view(dimension="2d-array")
             self._create_moments(body, kind, moments)
@@ -255,7 +285,8 @@ class WaterTechnique:
     def _create_moments(self, body: Body, kind: str, moments: list[np.ndarray]) -> None:
         layers, rows, columns = moments[0].shape[:3]
         given: dict[str, Any] = {"format": kind, "layers": layers, "mips": len(moments), "label": "wave moments"}
-        texture = self.device.texture(size=(columns, rows), **given)
+        usage = ("sample", "copy") if body.ripples is None else ("sample", "copy", "storage")
+        texture = self.device.texture(size=(columns, rows), usage=usage, **given)
         body.bindings["moments_texture"] = texture
         body.bindings["wave_moments"] = texture.create_view(dimension="2d-array")
 

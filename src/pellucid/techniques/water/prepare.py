@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +19,8 @@ if TYPE_CHECKING:
 
     from pellucid.scene.water import Water
     from pellucid.scene.water_quality import WaterQuality
+
+NO_LAYERS: Mapping[int, Any] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
@@ -48,9 +52,15 @@ def sources_of(waves: Any) -> Sequence[Any]:
     return tuple(getattr(waves, "layers", (waves,)))
 
 
-def surfaces_of(waves: Any, time_s: float) -> tuple[Any, ...]:
-    """What each layer gives for a time: a `WaveSurface`, or heights alone."""
-    return tuple(s.surface(time_s) if hasattr(s, "surface") else s.advance(time_s) for s in sources_of(waves))
+def surfaces_of(waves: Any, time_s: float, stand_ins: Mapping[int, Any] = NO_LAYERS) -> tuple[Any, ...]:
+    """What each layer gives for a time: a `WaveSurface`, or heights alone.
+
+    Parameters
+    ----------
+    stand_ins : what is asked in place of a layer, by its number.
+    """
+    sources = [stand_ins.get(n, source) for n, source in enumerate(sources_of(waves))]
+    return tuple(s.surface(time_s) if hasattr(s, "surface") else s.advance(time_s) for s in sources)
 
 
 def same_surfaces(a: tuple[Any, ...], b: tuple[Any, ...]) -> bool:

@@ -9,8 +9,8 @@
 @group(0) @binding(2) var blurred: texture_2d<f32>;
 @group(0) @binding(3) var blurred_sampler: sampler;
 
-override FINISH_GLOW = false;
-override FINISH_TONE = 3u;  // place in passes.TONE_MAPPINGS
+override FINISH_GLOW: bool = false;
+override FINISH_TONE: u32 = 3u;  // place in passes.TONE_MAPPINGS
 
 @fragment
 fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
