@@ -148,6 +148,7 @@ _PRESETS: dict[str, dict[str, Any]] = {
         "march_steps": 8,
         "fallback": "environment",
         "shading_rate": 2,
+        "texture_size": 384,
         "caustic_size": 256,
     },
     "mihalik": {
