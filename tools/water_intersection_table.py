@@ -22,7 +22,7 @@ from pellucid.scene.water_quality import WaterQuality
 from pellucid.surroundings import Surroundings
 from pellucid.surroundings.camera import view_of
 from pellucid.techniques.water.cameras import ray_of
-from pellucid.techniques.water.picture_query import UNKNOWN, PictureQuery
+from pellucid.techniques.water.picture_query import HIDDEN, UNKNOWN, PictureQuery
 from pellucid.techniques.water.reference_pictures import first_triangle
 from pellucid.techniques.water.views import SurfacePictures
 
@@ -108,7 +108,7 @@ def rows(device: Device) -> list[str]:
                 error = np.linalg.norm(places.shown_ws - true, axis=1)[met]
                 fails = error > FAILS * way[met]
                 low, high = np.percentile(error, [50, 95])
-                known = (places.found == UNKNOWN)[met] & fails
+                known = np.isin(places.found, (UNKNOWN, HIDDEN))[met] & fails
                 border = ((places.uv < 0.0) | (places.uv > 1.0)).any(axis=1)[met] & fails
                 sky = (np.linalg.norm(places.shown_ws - points, axis=1) > SKY_M)[met] & fails & ~border
                 shares = [f"{100 * part.mean():.1f} %" for part in (fails, known, fails & ~sky & ~border, sky, border)]

@@ -16,6 +16,7 @@ fn fs_main(@builtin(position) position: vec4f) -> WaterWidened {
     let share = at - floor(at);
     var sum = vec4f(0.0);
     var weights = 0.0;
+    var own = 0.0;  // of the square that the pixel is in
     for (var k = 0; k < 4; k++) {
         let corner = vec2i(k & 1, k >> 1);
         let shown = textureLoad(water_squares, clamp(low + corner, vec2i(0), last), 0);
@@ -23,8 +24,8 @@ fn fs_main(@builtin(position) position: vec4f) -> WaterWidened {
         let weight = select(0.0, near.x * near.y, shown.a > 0.0);
         sum += weight * shown;
         weights += weight;
+        own = select(own, shown.a, all(low + corner == vec2i(position.xy) / i32(WATER_RATE)));
     }
-    let own = textureLoad(water_squares, vec2i(position.xy) / i32(WATER_RATE), 0).a;
     let mean = sum / max(weights, 1e-6);
     let drawn = textureLoad(opaque_depth, vec2i(position.xy), 0);
     if own <= 0.0 || mean.a < drawn {
