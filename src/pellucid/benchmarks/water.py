@@ -95,7 +95,7 @@ def _rows() -> dict[str, _Row]:
         "lake_caustics": _Row(by("fast"), "with caustics", against="lake"),
         "lake_glow": _Row(by("fast", glow=1.0), "with caustics and glow", against="lake"),
         "lake_every_pixel": _Row(
-            by("fast", shading_rate=1, texture_size=512), "with caustics, a look for every pixel", against="lake_caustics"
+            by("fast", shading_rate=1, texture_size=512), "a look for every pixel", against="lake_caustics"
         ),
         "lake_moving_camera": _Row(by("fast"), "with caustics, camera flies", True, "lake_caustics"),
         TRUEST: _Row(by("best"), "rays, with caustics", against="lake_caustics"),
