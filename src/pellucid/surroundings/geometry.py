@@ -85,6 +85,13 @@ def materials(meshes: Sequence[Mesh], geometry: Geometry, layers: Sequence[int],
     return records
 
 
+def albedo(meshes: Sequence[Mesh]) -> np.ndarray:
+    """(M, 3) mean base colour of each mesh; at least one row."""
+    maps = [1.0 if m.base_color_map is None else np.mean(m.base_color_map, axis=(0, 1))[:3] for m in meshes]
+    colors = [np.asarray(m.base_color, np.float64) * mean for m, mean in zip(meshes, maps, strict=True)]
+    return np.array(colors or [np.zeros(3)])
+
+
 def _world_points(mesh: Mesh) -> np.ndarray:
     matrix = np.asarray(mesh.object_to_world(), np.float64)
     return np.asarray(mesh.vertices, np.float64) @ matrix[:3, :3].T + matrix[:3, 3]

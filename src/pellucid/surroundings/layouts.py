@@ -15,6 +15,8 @@ DIFFUSE_ENTRIES = 32  # rows of a table of light that goes diffusely through an 
 MAX_WATERS = 4  # of which what stands in them is lit through their surface
 MAX_WATER_LIGHTS = 4  # lights with caustics in each of them
 
+OPEN_SIZE = (24, 8, 24)  # places along x, y, z of each water from which the sky is looked for, see open_sky.py
+
 LIGHT_DIRECTIONAL = 0
 LIGHT_POINT = 1
 LIGHT_AREA = 2
@@ -148,6 +150,9 @@ QueryHit = struct(
     ]
 )
 
+# Places from which the sky is looked for.
+OpenSky = struct([("low", "vec3f"), ("level", "f32"), ("high", "vec3f"), ("index", "f32")])
+
 # Water that opaque surfaces stand in, see submersion.py. Arrays have one entry for each water, tables DIFFUSE_ENTRIES.
 SubmersionParams = struct(
     [
@@ -157,7 +162,7 @@ SubmersionParams = struct(
             ("vec4f", MAX_WATERS),
         ),  # level; highest wave over it; first layer of maps; reach of their depth, m
         ("index", ("vec4f", MAX_WATERS)),  # over that above, for red, green, blue
-        ("absorption", ("vec4f", MAX_WATERS)),  # 1/m
+        ("absorption", ("vec4f", MAX_WATERS)),  # 1/m; how deep meshes hide the sky, m
         ("scattering", ("vec4f", MAX_WATERS)),  # 1/m; mean cosine
         ("sky", ("vec4f", MAX_WATERS)),  # irradiance of the sky just below a level surface, over its intensity
         ("sky_axis", ("vec4f", MAX_WATERS)),  # unit, where that comes from; space of the environment

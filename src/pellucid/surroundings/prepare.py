@@ -69,6 +69,7 @@ class Surroundings:
         self._casters: list[list[bool]] = []
         self._lamp_kinds = lights.lamp_constants(np.zeros(0, Light))
         self._far_lamps = 0
+        self._albedo = geometry.albedo(())
         self.caustics = CausticMaps(device, self._resources)
         self.submersion = Submersion(device, self._resources)
         self._viewed: tuple[Camera, tuple[int, int]] | None = None
@@ -179,6 +180,13 @@ class Surroundings:
             self._through[n] = sky_through(self._sky, self._frame["environment_sh"][:, :3].astype(np.float64), n)
         return self._through[n]
 
+    def shade_sky(self) -> None:
+        """Find what meshes hide of the sky from what lies in the waters that `submersion` knows."""
+        turn = float(self._frame["environment_rotation"][0]), float(self._frame["environment_rotation"][1])
+        if self.submersion.open_sky.update(self.submersion.regions, self._geometry, self._albedo, self._sky, turn):
+            self.submersion.version += 1
+            self.submersion.settled += 1
+
     def set_camera(
         self,
         camera: Camera,
@@ -267,6 +275,7 @@ class Surroundings:
         for layer, casts in enumerate(self._casters):
             records["flags"][: len(casts)] |= np.uint32(MATERIAL_CASTS_SHADOW << layer) * np.array(casts)
         records["flags"][self._shown : len(meshes)] |= MATERIAL_UNSEEN
+        self._albedo = geometry.albedo(meshes)
         self._store("materials", records)
 
     def _prepare_shadows(self, layers: int) -> None:

@@ -30,6 +30,7 @@ from pellucid.optics import fresnel_dielectric
 from pellucid.surroundings.diffuse import diffuse_tables
 from pellucid.surroundings.environment import irradiance_basis, row_solid_angles
 from pellucid.surroundings.layouts import DIFFUSE_ENTRIES, MAX_WATER_LIGHTS, MAX_WATERS, SubmersionParams
+from pellucid.surroundings.open_sky import OpenSkyMaps
 
 if TYPE_CHECKING:
     from pellucid.gpu import Device
@@ -59,6 +60,7 @@ class WaterRegion:
     shadows : by map, whether meshes throw any.
     along : whether all those cameras look along the light that a level surface refracts.
     near : by map, whether it is that of a lamp nearby, over this water.
+    shade_depth_m : how far below the highest wave meshes hide the sky from what lies there; 0 where they do not.
     """
 
     level_m: float
@@ -74,6 +76,7 @@ class WaterRegion:
     shadows: tuple[bool, ...] = ()
     along: bool = False
     near: tuple[bool, ...] = ()
+    shade_depth_m: float = 0.0
 
 
 @dataclass
@@ -119,6 +122,7 @@ class Submersion:
         self._params = np.zeros((), SubmersionParams)
         self._size: tuple[int, int, int] | None = None
         self._sky: tuple[Any, ...] = ()
+        self.open_sky = OpenSkyMaps(device, resources)
         resources["submersion"] = device.buffer(self._params, "uniform", "submersion")
         self._allocate(1, 1, 1)
 
@@ -127,7 +131,7 @@ class Submersion:
         """Bytes of GPU memory held."""
         assert self._size is not None
         side, depth_side, layers = self._size
-        return SubmersionParams.itemsize + layers * (8 * side**2 + 4 * depth_side**2)
+        return self.open_sky.nbytes + SubmersionParams.itemsize + layers * (8 * side**2 + 4 * depth_side**2)
 
     def is_above(self, p_ws: np.ndarray) -> bool:
         """Whether a point (3,) is above the highest wave of all waters, and sees what is in them through a surface."""
@@ -178,7 +182,7 @@ class Submersion:
         p["bounds"][k] = *region.low_m, *region.high_m
         p["level"][k] = region.level_m, region.limits_m[1], self.layer(k, 0), region.reach_m
         p["index"][k, :3] = region.n
-        p["absorption"][k, :3] = region.absorption_per_m
+        p["absorption"][k] = *region.absorption_per_m, region.shade_depth_m
         p["scattering"][k] = *region.scattering_per_m, region.asymmetry
         p["sky"][k, :3], p["sky_axis"][k, :3], p["ground"][k, :3] = sky.irradiance, sky.axis, sky.ground
         air = sky.air or sky

@@ -27,3 +27,4 @@
 @group(1) @binding(17) var<uniform> submersion: SubmersionParams;
 @group(1) @binding(18) var submerged_light: texture_2d_array<f32>;  // what comes through a surface; its height, metres
 @group(1) @binding(19) var submerged_depth: texture_depth_2d_array;  // first mesh below it along the light
+@group(1) @binding(20) var<storage, read> submerged_open: array<vec4u>;  // half floats by place: see submerged_open.wgsl

@@ -47,7 +47,7 @@ fn shade_parts(surface: SurfacePoint, triangle: u32, view_ws: vec3f) -> Shaded {
     var from_everywhere = environment_irradiance(n_ws);
     if SUBMERGED {
         if water.inside {
-            from_everywhere = submerged_irradiance(n_ws, diffuse * GGX_PI, water);
+            from_everywhere = submerged_irradiance(p_ws, n_ws, diffuse * GGX_PI, water);
         }
     }
     var radiance = materials[material].emission + diffuse * from_everywhere;

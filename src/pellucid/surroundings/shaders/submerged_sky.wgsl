@@ -1,6 +1,7 @@
 // Light from everywhere under level water: the sky through Snell's window, and what the surface throws back.
 //!import optics/fresnel
 //!import surroundings/shaders/environment
+//!import surroundings/shaders/submerged_open
 //!import surroundings/shaders/submersion
 
 const SUBMERGED_PI = 3.14159265358979;
@@ -51,7 +52,8 @@ fn submerged_rows(water: u32, depth_m: f32) -> DiffuseRows {
 // surface mirrors the water. Level and clear it is E_window / (1 - A back_0) [saunderson1942]; in a uniform environment
 // a white surface receives pi n^2 L whichever way it faces. In an uneven one, E_window and E_ground know no more of the
 // sky than an axis: what that misses in air, where environment_irradiance knows more, is taken to be missed in water.
-fn submerged_irradiance(n_ws: vec3f, albedo: vec3f, at: Submerged) -> vec3f {
+// Meshes hide some of what comes through the window (submerged_open.wgsl).
+fn submerged_irradiance(p_ws: vec3f, n_ws: vec3f, albedo: vec3f, at: Submerged) -> vec3f {
     let window = submersion.window[at.water];
     let down = submerged_down(at.water, at.depth_m);
     let back = submerged_back(at.water, at.depth_m);
@@ -62,7 +64,8 @@ fn submerged_irradiance(n_ws: vec3f, albedo: vec3f, at: Submerged) -> vec3f {
     let in_air = submersion.air_sky[at.water].rgb * seen_in_air + submersion.air_ground[at.water].rgb * (1.0 - upper);
     let known = max(frame.environment_intensity * in_air, vec3f(1e-9));
     let missed = clamp(environment_irradiance(n_ws) / known, vec3f(0.0), vec3f(2.0));
-    let sky = submersion.sky[at.water].rgb * seen * down + submersion.ground[at.water].rgb * (1.0 - upper) * down;
+    let left = submerged_sky_left(p_ws, n_ws, at.water);
+    let sky = submersion.sky[at.water].rgb * left * seen * down + submersion.ground[at.water].rgb * (1.0 - upper) * down;
     let mirrored = max(upper - (1.0 - window.rgb) * cap_irradiance(n_ws.y, window.a), vec3f(0.0));
     let again = 1.0 - albedo * mirrored * back / max(window.rgb, vec3f(1e-6));
     return missed * frame.environment_intensity * sky / max(again, vec3f(1e-3));

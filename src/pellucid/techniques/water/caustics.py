@@ -102,6 +102,7 @@ class WaterLight:
         side = max((body.quality.caustic_size for body in bodies), default=1)
         sky = [surroundings.sky_through(region.n) for region in regions]
         anew = surroundings.submersion.set(regions, side, DEPTH_SIZE if bodies else 1, sky)
+        surroundings.shade_sky()
         if not bodies:
             self._drawn = self._lit = None
             return
@@ -303,6 +304,8 @@ def region_of(body: Any, lamps: Sequence[Any], mesh_bounds: Sequence[tuple[np.nd
     lowest = min((float(low[1]) for low, _ in mesh_bounds), default=top)
     # A little deeper than the lowest mesh, whose depth would else be that of nothing.
     reach = 1.01 * (top - lowest) if lowest < top else OPEN_M
+    # What has the index of air is lit as air is, where nothing hides the sky.
+    hides_sky = quality.shadows and n != (1.0, 1.0, 1.0)
     thesis = quality.color == "mihalik"
     absorption = np.full(3, p["clarity"]) if thesis else p["absorption"]
     scattering = np.zeros(3) if thesis else p["scattering"]
@@ -320,7 +323,16 @@ def region_of(body: Any, lamps: Sequence[Any], mesh_bounds: Sequence[tuple[np.nd
         shadows=tuple(quality.shadows and lamp.cast_shadow for lamp in lamps),
         along=quality.caustic_camera == "refracted" and n[1] >= 1.0,
         near=tuple(shines_in(lamp, body) for lamp in lamps),
+        shade_depth_m=shaded_depth(mesh_bounds, p["low"], p["high"], top) if hides_sky else 0.0,
     )
+
+
+def shaded_depth(
+    mesh_bounds: Sequence[tuple[np.ndarray, np.ndarray]], low: np.ndarray, high: np.ndarray, top: float
+) -> float:
+    """From the highest wave to the lowest point of meshes in the rectangle of a water, metres; 0 without any."""
+    over = [b for b in mesh_bounds if (b[0][[0, 2]] < high).all() and (b[1][[0, 2]] > low).all()]
+    return max((top - float(b[0][1]) for b in over), default=0.0) * (1.0 + 1e-3)
 
 
 def camera_slope(lamp: Any, n: float, quality: WaterQuality) -> tuple[float, float]:
