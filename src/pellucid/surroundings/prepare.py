@@ -104,6 +104,7 @@ class Surroundings:
         own = {
             "CAUSTICS": float(self.caustics.active),
             "SUBMERGED": float(self.submersion.active),
+            "LAMPS": float(self.light_count),
             "MAPS_ALONG": float(all(region.along for region in regions)),
             "ASTRAY": float(any(any(region.scattering_per_m) for region in regions)),
         }

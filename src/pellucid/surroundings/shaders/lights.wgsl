@@ -5,6 +5,7 @@
 // Which lamps there are. A driver that executes every branch spares what no lamp of the scene takes: a ray a sample.
 override LAMPS_FAR: bool = true;
 override LAMPS_NEAR: bool = true;
+override LAMPS: i32 = -1;              // how many of all kinds, -1 for as many as the frame says
 override LAMPS_OCCLUDED: bool = true;  // whether a mesh can stand before those nearby
 
 const LIGHT_DIRECTIONAL = 0u;
@@ -20,7 +21,7 @@ struct LightSample {
 // Not the uniform alone: the software driver builds a shader anew, at every dispatch, for the values of uniforms that conditions
 // depend on and nothing else.
 fn light_count() -> u32 {
-    return min(frame.light_count, arrayLength(&lights));
+    return select(min(frame.light_count, arrayLength(&lights)), u32(LAMPS), LAMPS >= 0);
 }
 
 fn light_sample_count(light: u32) -> u32 {

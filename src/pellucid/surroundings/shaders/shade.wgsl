@@ -53,23 +53,28 @@ fn shade_parts(surface: SurfacePoint, triangle: u32, view_ws: vec3f) -> Shaded {
     var radiance = materials[material].emission + diffuse * from_everywhere;
     if specular > 0.0 {
         let mirrored = reflect(-view_ws, n_ws);
-        var glossy = environment_glossy(mirrored, alpha);
         if SUBMERGED {
-            if water.inside {
-                glossy = submerged_glossy(mirrored, alpha, water);
-            }
+            // One reading serves both: a software driver would do both.
+            let out = select(mirrored, submerged_way_out(mirrored, water), water.inside);
+            let sky = environment_glossy(out, alpha);
+            radiance += specular * select(sky, submerged_glossy(sky, mirrored, water), water.inside);
+        } else {
+            radiance += specular * environment_glossy(mirrored, alpha);
         }
-        radiance += specular * glossy;
     }
     var apart = Shaded(vec3f(0.0), vec3f(0.0), 1.0);
     var direct = DirectLight(vec3f(0.0), vec3f(0.0));
     let n_face = face_normal(triangle, view_ws);
     for (var light = 0u; light < light_count(); light++) {
+        var seen = 1.0;
+        if SUBMERGED {
+            seen = lamp_seen(light, p_ws, n_ws, water);
+        }
         let samples = light_sample_count(light);
         for (var k = 0u; k < samples; k++) {
             var sample: LightSample;
             if SUBMERGED {
-                sample = sample_light_anywhere(light, k, p_ws, n_ws, water);
+                sample = sample_light_anywhere(light, k, p_ws, n_ws, water, seen);
             } else {
                 sample = sample_light(light, k, p_ws, n_ws);
             }
@@ -83,6 +88,7 @@ fn shade_parts(surface: SurfacePoint, triangle: u32, view_ws: vec3f) -> Shaded {
                 if SUN_APART {
                     let mapped = water.inside && lights[light].water_layer == 0;
                     apart.sun += select(vec3f(0.0), sent, mapped);
+                    apart.sun_seen = select(apart.sun_seen, seen, mapped);
                     radiance += select(sent, vec3f(0.0), mapped);
                 } else {
                     radiance += sent;
@@ -97,9 +103,6 @@ fn shade_parts(surface: SurfacePoint, triangle: u32, view_ws: vec3f) -> Shaded {
         let received = received_at(triangle, p_ws, view_ws);
         radiance += diffuse * received.caustic - direct.radiance * blocked_share(received, direct.irradiance);
         radiance = max(radiance, vec3f(0.0));
-    }
-    if SUN_APART {
-        apart.sun_seen = submerged_map_visibility(submerged_sun(), p_ws, n_ws, water.water);
     }
     return Shaded(radiance, apart.sun, apart.sun_seen);
 }

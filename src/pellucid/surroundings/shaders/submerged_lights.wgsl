@@ -3,17 +3,34 @@
 //!import surroundings/shaders/submerged_sky
 //!import surroundings/shaders/submerged_sun
 
-fn sample_light_anywhere(light: u32, index: u32, p_ws: vec3f, n_ws: vec3f, at: Submerged) -> LightSample {
+// `seen` is what lamp_seen tells.
+fn sample_light_anywhere(
+    light: u32, index: u32, p_ws: vec3f, n_ws: vec3f, at: Submerged, seen: f32
+) -> LightSample {
     if LAMPS_FAR && (!LAMPS_NEAR || lights[light].kind == LIGHT_DIRECTIONAL) {
-        if at.inside {
-            return sample_submerged_sun(light, p_ws, n_ws, at);
-        }
-        return sample_directional_light(light, p_ws, n_ws);
+        let wet = sample_submerged_sun(light, p_ws, n_ws, at, seen);
+        let direction = select(lights[light].direction, wet.direction, at.inside);
+        return LightSample(direction, select(lights[light].power * seen, wet.irradiance, at.inside));
     }
     if LAMPS_NEAR {
         return sample_near_light_anywhere(light, index, p_ws, n_ws, at);
     }
     return LightSample(n_ws, vec3f(0.0));
+}
+
+// Share of a lamp far away that meshes leave: by the map of the water that a point is in, as far as that reaches. Past
+// walls, if there are any, light has not come in through the surface, and casts shadows as in air.
+fn lamp_seen(light: u32, p_ws: vec3f, n_ws: vec3f, at: Submerged) -> f32 {
+    if !LAMPS_FAR {
+        return 1.0;
+    }
+    let in_air = shadow_visibility(light, p_ws, n_ws);
+    let layer = u32(max(lights[light].water_layer, 0));
+    let camera = submersion.slope[at.water * MAX_WATER_LIGHTS + layer];
+    let mapped = submerged_mapped(submerged_uv(at.water, submerged_entry(p_ws, submersion.level[at.water].x, camera.xy)));
+    let map = u32(submersion.level[at.water].z) + layer;
+    let below = mix(1.0, submerged_visibility(at.water, map, p_ws, n_ws, camera.xy), camera.z);
+    return select(in_air, below, at.inside && mapped);
 }
 
 // As sample_near_light. A lamp over the water lights what is in it through the level surface, exactly, times what its map

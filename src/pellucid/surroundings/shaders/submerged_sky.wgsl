@@ -89,16 +89,20 @@ fn cap_irradiance(cosine: f32, sine2: f32) -> f32 {
     return max(whole / (SUBMERGED_PI * sine2), 0.0);
 }
 
+// Unit direction in which a ray goes on above level water; level where it is totally reflected
+fn submerged_way_out(direction_ws: vec3f, at: Submerged) -> vec3f {
+    let aside = submersion.index[at.water].g * direction_ws.xz;
+    return normalize(vec3f(aside.x, sqrt(max(1.0 - dot(aside, aside), 0.0)), aside.y));
+}
+
 // Radiance that a glossy surface in the water mirrors: through the window the sky, n^2 as bright, around it and below
-// what the water holds, which is as bright as what comes up from below.
-fn submerged_glossy(direction_ws: vec3f, alpha: f32, at: Submerged) -> vec3f {
+// what the water holds, which is as bright as what comes up from below. `above` is the sky's on the way out.
+fn submerged_glossy(above: vec3f, direction_ws: vec3f, at: Submerged) -> vec3f {
     let n = submersion.index[at.water].rgb;
     let ground = frame.environment_intensity * submersion.ground[at.water].rgb / SUBMERGED_PI;
     let up = max(direction_ws.y, 1e-4);
-    let aside = n.g * direction_ws.xz;
-    let out = vec3f(aside.x, sqrt(max(1.0 - dot(aside, aside), 0.0)), aside.y);
     let passed = select(vec3f(0.0), 1.0 - submerged_exit_reflectance(up, n), direction_ws.y > 0.0);
-    let sky = n * n * environment_glossy(normalize(out), alpha);
+    let sky = n * n * above;
     let path_m = min(at.depth_m / up, 1e6);
     let left = exp(-submerged_attenuation(at.water) * select(at.depth_m, path_m, direction_ws.y > 0.0));
     return left * (passed * sky + (1.0 - passed) * ground);

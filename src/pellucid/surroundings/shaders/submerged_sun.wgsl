@@ -17,37 +17,18 @@ fn submerged_direction(to_light: vec3f, index: f32) -> vec3f {
 
 // Irradiance across the refracted beam: that above, l.y of which falls on a square metre of the surface, over the
 // share of the refracted beam that leaves it, times what the surface lets through and does to its density
-fn sample_submerged_sun(light: u32, p_ws: vec3f, n_ws: vec3f, at: Submerged) -> LightSample {
+fn sample_submerged_sun(light: u32, p_ws: vec3f, n_ws: vec3f, at: Submerged, seen: f32) -> LightSample {
     let towards = lights[light].direction;
-    let index = submersion.index[at.water].rgb;
-    let direction = submerged_direction(towards, index.g);
+    let direction = submerged_direction(towards, submersion.index[at.water].g);
     if towards.y <= 0.0 || dot(direction, n_ws) <= 0.0 {
         return LightSample(direction, vec3f(0.0));
     }
     let irradiance = lights[light].power * (towards.y / direction.y);
-    return LightSample(direction, irradiance * submerged_flux(light, p_ws, n_ws, direction, at));
-}
-
-// What is left of the flux that falls on the surface above a point
-fn submerged_flux(light: u32, p_ws: vec3f, n_ws: vec3f, direction: vec3f, at: Submerged) -> vec3f {
     if SUN_APART {
-        return vec3f(1.0);  // there is one map, and all its light is added later
+        return LightSample(direction, irradiance);  // there is one map, and all its light is added later
     }
-    let layer = lights[light].water_layer;
-    let seen = submerged_map_visibility(light, p_ws, n_ws, at.water);
-    let beam = submerged_beam(lights[light].direction, direction, at.water);
-    return submerged_share(beam, layer, p_ws, at.water, seen);
-}
-
-// Shadow of meshes in the map of a light; past walls, if there are any, in light that has not come in through the surface
-fn submerged_map_visibility(light: u32, p_ws: vec3f, n_ws: vec3f, water: u32) -> f32 {
-    let layer = u32(max(lights[light].water_layer, 0));
-    let camera = submersion.slope[water * MAX_WATER_LIGHTS + layer];
-    if submerged_mapped(submerged_uv(water, submerged_entry(p_ws, submersion.level[water].x, camera.xy))) {
-        let map = u32(submersion.level[water].z) + layer;
-        return mix(1.0, submerged_visibility(water, map, p_ws, n_ws, camera.xy), camera.z);
-    }
-    return shadow_visibility(light, p_ws, n_ws);
+    let beam = submerged_beam(towards, direction, at.water);
+    return LightSample(direction, irradiance * submerged_share(beam, lights[light].water_layer, p_ws, at.water, seen));
 }
 
 // The lamp of the first map of each water; the first lamp where there is none

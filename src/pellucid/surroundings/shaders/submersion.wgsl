@@ -26,19 +26,13 @@ fn submerged_at(p_ws: vec3f) -> Submerged {
     return found;
 }
 
-// The same but for waves: what only the highest of them covers counts as just below the surface
+// The same where there is but one water, without its waves: what only the highest of them covers counts as just below
+// the surface
 fn submerged_at_rest(p_ws: vec3f) -> Submerged {
-    var found = Submerged(false, 0u, 1e30);
-    for (var k = 0u; k < MAX_WATERS; k++) {
-        let bounds = submersion.bounds[k];
-        let level = submersion.level[k];
-        let within = all(p_ws.xz >= bounds.xy) && all(p_ws.xz <= bounds.zw) && p_ws.y < level.x + level.y;
-        let depth_m = max(level.x - p_ws.y, 0.0);
-        if within && depth_m < found.depth_m {
-            found = Submerged(true, k, depth_m);
-        }
-    }
-    return found;
+    let bounds = submersion.bounds[0];
+    let level = submersion.level[0];
+    let within = all(p_ws.xz >= bounds.xy) && all(p_ws.xz <= bounds.zw) && p_ws.y < level.x + level.y;
+    return Submerged(within, 0u, max(level.x - p_ws.y, 0.0));
 }
 
 // Place on the maps of a water, 0..1, of a place on its level
