@@ -282,6 +282,19 @@ def test_maps_are_kept_until_something_moves(renderer: Renderer) -> None:
     assert (light.photon_runs, light.depth_runs) == (runs[0] + 2, runs[1] + 1)
 
 
+def test_without_caustics_waves_leave_the_light_as_it_is(renderer: Renderer) -> None:
+    wanted = scene(waves=sines(0.06), caustics="none")
+    floor, water = wanted.objects
+    level = lit(renderer, wanted.replace(objects=[floor, water.replace(waves=None)])).maps[0]
+    found = lit(renderer, wanted)
+    np.testing.assert_allclose(found.maps[0], level, rtol=2e-3)  # half floats; meshes are seen from the highest wave
+    submersion = renderer.surroundings.submersion
+    before = found.light.photon_runs, submersion.version
+    moved = water.replace(waves=Still(np.roll(water.waves.heights, 5, axis=1)))
+    shine(renderer, wanted.replace(objects=[floor, moved]))
+    assert (found.light.photon_runs, submersion.version) == before
+
+
 def test_the_camera_of_the_map_does_not_change_the_light_on_the_floor(renderer: Renderer) -> None:
     x, z = np.meshgrid(np.linspace(-0.8, 0.8, 24), np.linspace(-0.8, 0.8, 24))
     points = np.stack([x.ravel(), np.full(x.size, -1.0), z.ravel()], axis=1)

@@ -125,7 +125,7 @@ class WaterLight:
         seen = [lamp.params.tobytes() for _, lamp in records]
         places = [(region.level_m, region.low_m, region.high_m, region.limits_m) for region in regions]
         drawn = (surroundings, surroundings.shadow_version, seen, places)
-        lit = [(b.version, b.time_s, b.item.waves, _choices(b.quality)) for b in bodies]
+        lit = [(_waves_of(b), _choices(b.quality)) for b in bodies]
         encoder = self.device.wgpu.create_command_encoder()
         if anew or drawn != self._drawn:
             for body, lamp in records:
@@ -367,6 +367,11 @@ def caustic_params(
         return p, near_lamp_parts(p, lamp, region) if shines_in(lamp, body) else []
     texel_m = (np.asarray(region.high_m) - region.low_m) / side
     return p, lamp_in_parts(p, lamp, texel_m)
+
+
+def _waves_of(body: Any) -> tuple[Any, ...]:
+    """What of its waves maps depend on: nothing where light comes through level water."""
+    return () if body.quality.caustics == "none" else (body.version, body.time_s, body.item.waves)
 
 
 def _choices(quality: WaterQuality) -> tuple[Any, ...]:

@@ -69,7 +69,7 @@ CausticParams = struct(
         ("slope_above", "vec2f"),  # along the light above it
         ("lamp_side", "vec2f"),  # of its picture in the water, by axis, over the depth
         ("share", "f32"),  # of the lamp that shines from there
-        ("focus", "f32"),  # 1; 0 to leave out what waves do to the density
+        ("focus", "f32"),  # 1; 0 for level water instead of waves
         ("loss", "f32"),  # 1; 0 to leave out what the surface reflects
         ("shadows", "f32"),  # 1; 0 for a lamp without any
         ("reach_above_m", "f32"),

@@ -16,7 +16,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         units[channel] = caustic_between(at - 0.5, channel);
     }
     let all_channels = select(units.rrr, units, caustic.channels == 3u);
-    let height = wave_height(caustic_place(at));
+    let height = caustic.focus * wave_height(caustic_place(at));
     textureStore(caustic_map_out, vec2i(id.xy), caustic.layer, vec4f(all_channels / CAUSTIC_UNITS, height));
 }
 
