@@ -27,8 +27,8 @@ class Frame:
         matter with many wavelengths makes, have negative components. Row 0 is the top. Or what gives it when called.
     depth : (H, W) float32, metres along the view axis to the first surface, inf where nothing is; or what gives it.
     display : (H, W, 3) uint8, after exposure, tone mapping and sRGB encoding.
-    timings : {pass: milliseconds}; the device's own clock for passes, the wall clock for "prepare", "illuminate" and
-        "total", which ends when `display` is there.
+    timings : {pass: milliseconds}; the device's own clock for passes, the wall clock for "prepare", "illuminate" (the
+        picture is encoded meanwhile) and "total", which ends when `display` is there.
     """
 
     def __init__(

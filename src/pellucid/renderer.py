@@ -99,15 +99,18 @@ class Renderer:
         self._prepare(scene, (width, height))
         self._simulate(time)
         timings = {"prepare": 1e3 * (clock.perf_counter() - begun)}
-        self._illuminate(scene, timings)
+        lit = clock.perf_counter()
+        self._illuminate(scene)
         self._finish.prepare(scene.exposure, scene.tone_mapping, scene.glow)
         averaged: tuple[np.ndarray, np.ndarray] | None = None
         if samples > 1:
+            self._wait(timings, lit)
             averaged = self._accumulate(scene, samples, targets, timings, progress)
             self.device.write_texture(targets.color, averaged[0])
             encoder = self.device.wgpu.create_command_encoder()
         else:
-            encoder = self._draw(scene, targets)
+            encoder = self._draw(scene, targets)  # while the device is busy with the light
+            self._wait(timings, lit)
         self._finish.draw(encoder, targets.color, self._display_view, self._timer)
         display = self._submit(encoder, timings, [TextureRead(self._display)])[0][..., :3]
         timings["total"] = 1e3 * (clock.perf_counter() - begun)
@@ -184,11 +187,12 @@ class Renderer:
             if hasattr(technique, "simulate"):
                 technique.simulate(time)
 
-    def _illuminate(self, scene: Scene, timings: dict[str, float]) -> None:
+    def _illuminate(self, scene: Scene) -> None:
         """Light from the lamps' side, where a technique wants it; kept until what it depends on moves."""
-        begun = clock.perf_counter()
         for technique in self._techniques.values():
             technique.illuminate(scene.lights, self.surroundings)
+
+    def _wait(self, timings: dict[str, float], begun: float) -> None:
         self.device.wait()
         timings["illuminate"] = 1e3 * (clock.perf_counter() - begun)
 

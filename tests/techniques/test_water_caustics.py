@@ -43,7 +43,7 @@ def shine(renderer: Renderer, wanted: pl.Scene) -> None:
     """All that comes before a picture is drawn."""
     renderer._prepare(wanted, (8, 8))
     renderer._simulate(0.0)
-    renderer._illuminate(wanted, {})
+    renderer._illuminate(wanted)
 
 
 def lit(renderer: Renderer, wanted: pl.Scene) -> SimpleNamespace:

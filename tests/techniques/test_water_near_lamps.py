@@ -43,7 +43,7 @@ def shine(renderer: Renderer, lights: list[Any], *objects: Any, waves: Any = Non
     wanted = pl.Scene(camera=camera, environment=dark, lights=lights, objects=[floor, water, *objects])
     renderer._prepare(wanted, (8, 8))
     renderer._simulate(0.0)
-    renderer._illuminate(wanted, {})
+    renderer._illuminate(wanted)
     return renderer._techniques[pl.Water].bodies[0]
 
 

@@ -83,30 +83,37 @@ def wave_maps(item: Water, surfaces: tuple[Any, ...]) -> WaveMaps:
     if len(sources) > WAVE_LAYERS:
         raise SceneError("water.waves", f"are {len(sources)} layers", f"add up at most {WAVE_LAYERS}")
     rows, columns = (max(s.shape[axis] for s in sources) for axis in (0, 1))
-    pairs = zip(sources, surfaces, strict=True)
-    layers = [_layer(source, surface, (rows, columns)) for source, surface in pairs]
+    texels = np.empty((len(sources), rows, columns, 4), np.float32)
     tiles = np.array([[*s.tile_m, _repeats(s), 0.0] for s in sources], np.float32)
-    low, high = (sum(float(s.limits_m[k]) for s in sources) for k in (0, 1))
-    cells = [(s.tile_m[0] / columns, s.tile_m[1] / rows) for s in sources]
-    slope = sum(_steepest(texels[..., 0], cell) for texels, cell in zip(layers, cells, strict=True))
+    limits = sum(float(s.limits_m[0]) for s in sources), sum(float(s.limits_m[1]) for s in sources)
+    slope, low, high = 0.0, 0.0, 0.0
+    for layer, source, surface in zip(texels, sources, surfaces, strict=True):
+        heights = _fill(layer, source, surface)
+        low, high = low + float(heights.min()), high + float(heights.max())
+        slope += _steepest(heights, (source.tile_m[0] / columns, source.tile_m[1] / rows))
     cell = min(min(s.tile_m[0] / s.shape[1], s.tile_m[1] / s.shape[0]) for s in sources)
-    now = sum(float(t[..., 0].min()) for t in layers), sum(float(t[..., 0].max()) for t in layers)
-    return WaveMaps(np.stack(layers), tiles, (low, high), slope, float(cell), surfaces, now)
+    return WaveMaps(texels, tiles, limits, slope, float(cell), surfaces, (low, high))
 
 
-def _layer(source: Any, surface: Any, shape: tuple[int, int]) -> np.ndarray:
-    slopes, fold = getattr(surface, "slopes", None), getattr(surface, "fold", None)
+def _fill(texels: np.ndarray, source: Any, surface: Any) -> np.ndarray:
+    """Write a layer (H, W, 4) of texels; gives its heights (H, W)."""
     heights = np.asarray(getattr(surface, "heights", surface), np.float32)
     if not np.isfinite(heights).all():
         raise SceneError("water.waves", "give heights that are not finite", "give finite heights in metres")
+    slopes, fold = getattr(surface, "slopes", None), getattr(surface, "fold", None)
     if slopes is None:
         slopes = _slopes(heights, source)
-    fold = np.ones_like(heights) if fold is None else fold
-    texels = np.concatenate([heights[..., None], slopes, fold[..., None]], axis=2).astype(np.float32)
-    return texels if texels.shape[:2] == shape else _resized(texels, shape, _repeats(source))
+    same = heights.shape == texels.shape[:2]
+    out = texels if same else np.empty((*heights.shape, 4), np.float32)
+    out[..., 0], out[..., 1], out[..., 2] = heights, slopes[..., 0], slopes[..., 1]
+    out[..., 3] = 1.0 if fold is None else fold
+    if same:
+        return heights
+    texels[...] = _resized(out, texels.shape[:2], _repeats(source))
+    return np.ascontiguousarray(texels[..., 0])
 
 
-def _resized(texels: np.ndarray, shape: tuple[int, int], repeats: bool) -> np.ndarray:
+def _resized(texels: np.ndarray, shape: tuple[int, ...], repeats: bool) -> np.ndarray:
     """Linear between the centres of texels, along both axes."""
     for axis, count in enumerate(shape):
         have = texels.shape[axis]

@@ -24,12 +24,13 @@ def moment_levels(texels: np.ndarray) -> list[np.ndarray]:
     source n; layer 2 n + 1: of (dh/dx)^2, (dh/dz)^2, dh/dx dh/dz, fold^2.
     """
     count, rows, columns = texels.shape[:3]
-    height, along_x, along_z, fold = (texels[..., n] for n in range(4))
-    products = (along_x * along_x, along_z * along_z, along_x * along_z, fold * fold)
     # Planes first: NumPy is several times as slow with the channels innermost.
     planes = np.empty((2, 4, count, rows, columns), np.float32)
-    for n, plane in enumerate((along_x, along_z, fold, height, *products)):
-        planes[n // 4, n % 4] = plane
+    for n, channel in enumerate((1, 2, 3, 0)):
+        planes[0, n] = texels[..., channel]
+    along_x, along_z, fold = planes[0, :3]
+    for n, (one, other) in enumerate(((along_x, along_x), (along_z, along_z), (along_x, along_z), (fold, fold))):
+        np.multiply(one, other, out=planes[1, n])
     levels = []
     while True:
         planes = _halved(_halved(planes, -2), -1)
