@@ -7,7 +7,8 @@ import pytest
 
 import pellucid as pl
 from pellucid.fields import shapes
-from pellucid.fields.composition import Part, can_compose, compose, matter_of
+from pellucid.fields.composition import can_compose, compose
+from pellucid.fields.reaching import Part, matter_of
 from pellucid.scene.placement import placement_matrix
 
 

@@ -8,7 +8,7 @@ import pytest
 import oracles
 import pellucid as pl
 from pellucid.fields import shapes
-from pellucid.fields.composition import interfere, matter_of
+from pellucid.fields.reaching import interfere, matter_of
 from pellucid.techniques.eikonal.relay import BODIES_IN_A_ROW
 
 SIZE = (160, 120)

@@ -15,47 +15,13 @@ from pellucid.media import Medium
 from pellucid.optics.dispersion import LAMBDA_D_NM
 
 from .numbers import real_array
+from .region import Region
 from .sampling import Extent, FieldFunction, box_edges, check_resolution, check_size, sampled, sampling
-
-MOST_REGIONS = 4
-HIGHEST_INDEX = 100.0
+from .volume_checks import check_crystal, check_ranges, common_shape
+from .voxels import Voxels, refractive_index, unit_vectors, voxels
 
 MediumLike = Medium | str | float
 Axis = Sequence[float] | npt.NDArray[np.float64]
-Voxels = npt.NDArray[np.float32]
-
-
-@dataclass(frozen=True, eq=False)
-class Region:
-    """A body of one medium with a sharp surface.
-
-    Parameters
-    ----------
-    sdf : (Z, Y, X) signed distance to the surface in metres, negative inside.
-    medium : what fills it; a name, a `Medium` or a constant index.
-    name : for messages.
-    emission : radiance gained per metre, linear RGB, >= 0.
-    scattering : scattering coefficient, linear RGB, 1/m, >= 0.
-    anisotropy : mean cosine of scattering, in (-1, 1).
-    optic_axis : of a uniaxial crystal (such as calcite), its axis in object space; any length, kept as a unit vector.
-        With it light splits into two rays; without, the crystal is drawn as if it had its ordinary index only.
-    """
-
-    sdf: Voxels = field(repr=False)
-    medium: Medium
-    name: str = ""
-    emission: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    scattering: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    anisotropy: float = 0.0
-    optic_axis: tuple[float, float, float] | None = None
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "sdf", _voxels("sdf", self.sdf, channels=None))
-        object.__setattr__(self, "medium", media.resolve(self.medium))
-        object.__setattr__(self, "emission", _not_negative("emission", self.emission))
-        object.__setattr__(self, "scattering", _not_negative("scattering", self.scattering))
-        object.__setattr__(self, "anisotropy", _mean_cosine("anisotropy", self.anisotropy))
-        object.__setattr__(self, "optic_axis", _axis(self.optic_axis, self.medium))
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,18 +73,18 @@ class Volume:
 
     def __post_init__(self) -> None:
         put = object.__setattr__
-        put(self, "ambient_n", _index("ambient_n", self.ambient_n))
+        put(self, "ambient_n", refractive_index("ambient_n", self.ambient_n))
         put(self, "regions", tuple(self.regions))
-        put(self, "shape", _common_shape(self))
+        put(self, "shape", common_shape(self))
         put(self, "extent_m", box_edges(self.extent_m, self.shape))
         for name, channels in _CHANNELS.items():
             values = getattr(self, name)
             if values is not None:
-                put(self, name, _voxels(name, values, channels, self.shape))
+                put(self, name, voxels(name, values, channels, self.shape))
         if self.optic_axis is not None:
-            put(self, "optic_axis", _unit_vectors("optic_axis", self.optic_axis))
-        _check_ranges(self)
-        _check_crystal(self)
+            put(self, "optic_axis", unit_vectors("optic_axis", self.optic_axis))
+        check_ranges(self)
+        check_crystal(self)
 
     @property
     def voxel_m(self) -> tuple[float, float, float]:
@@ -173,7 +139,7 @@ class Volume:
             raise SceneError("n", f"has {bad} values that are not finite", "replace NaN and infinity by an index")
         if float(index.min()) <= 0.0:
             raise SceneError("n", f"has {float(index.min()):g}", "a refractive index is above 0")
-        ambient = _index("ambient_n", ambient_n)
+        ambient = refractive_index("ambient_n", ambient_n)
         # In double precision: n - 1 of a gas would lose most of its digits in float32.
         delta = (index.astype(np.float64) - ambient).astype(np.float32)
         fields = {
@@ -243,7 +209,7 @@ class Volume:
             distance, medium = pair
             name = f"regions[{i}].sdf"
             values = sampled(name, distance, shape, extent) if callable(distance) else distance
-            sdf = _voxels(name, values, None, shape)
+            sdf = voxels(name, values, None, shape)
             bodies.append(Region(sdf, media.resolve(medium), optic_axis=axes[i]))  # type: ignore[arg-type]
         return cls(extent, ambient_n, regions=tuple(bodies))  # type: ignore[arg-type]
 
@@ -376,69 +342,6 @@ def _filled(values: Voxels | None, shape: tuple[int, ...]) -> npt.NDArray[np.flo
     return np.zeros(shape) if values is None else values.astype(np.float64)
 
 
-def _not_negative(name: str, values: Any) -> tuple[float, float, float]:
-    """Three finite numbers, 0 or more."""
-    try:
-        rgb = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        rgb = np.full(3, np.nan)
-    if rgb.shape != (3,) or not np.isfinite(rgb).all() or (rgb < 0.0).any():
-        raise SceneError(name, f"is {values}", "give three numbers, 0 or more")
-    return float(rgb[0]), float(rgb[1]), float(rgb[2])
-
-
-def _mean_cosine(name: str, value: Any) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not abs(np.float32(value)) < 1.0:
-        raise SceneError(name, f"is {value!r}", "a mean cosine lies in (-1, 1)")
-    return float(value)
-
-
-def _axis(values: Any, medium: Medium) -> tuple[float, float, float] | None:
-    """A unit vector, of a medium that has an axis."""
-    if values is None:
-        return None
-    try:
-        axis = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        axis = np.zeros(0)
-    length = float(np.linalg.norm(axis)) if axis.shape == (3,) and np.isfinite(axis).all() else 0.0
-    if not length > 0.0:
-        raise SceneError("optic_axis", f"is {values!r}", "give three numbers that are not all 0")
-    if not medium.is_uniaxial:
-        raise SceneError(
-            "optic_axis",
-            f"is given, but {medium.name} has one index",
-            "use a crystal such as calcite or media.uniaxial",
-        )
-    x, y, z = axis if abs(length - 1.0) < 1e-12 else axis / length  # what is a unit vector stays what it is
-    return float(x), float(y), float(z)
-
-
-def _unit_vectors(name: str, vectors: Voxels) -> Voxels:
-    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    bad = int(np.count_nonzero(length < 1e-6))
-    if bad:
-        raise SceneError(name, f"has {bad} vectors of length 0", "give it a direction everywhere")
-    return _voxels(name, vectors if np.abs(length - 1.0).max() < 1e-6 else vectors / length, 3)
-
-
-def _check_crystal(volume: Volume) -> None:
-    """What varies inside a crystal belongs to the first region."""
-    for name in ("optic_axis", "delta_n_e"):
-        if getattr(volume, name) is not None and not volume.regions:
-            raise SceneError(name, "is given without regions", "a crystal is a region with a sharp surface")
-    if volume.delta_n_e is None:
-        if volume.optic_axis is not None and not volume.regions[0].medium.is_uniaxial:
-            reason = f"is given, but {volume.regions[0].medium.name} has one index"
-            raise SceneError("optic_axis", reason, "use a crystal such as calcite, media.uniaxial, or give delta_n_e")
-        return
-    if volume.optic_axis is None and volume.regions[0].optic_axis is None:
-        raise SceneError("delta_n_e", "is given without an axis", "give optic_axis, or that of the first region")
-    lowest, highest = float(volume.delta_n_e.min()), float(volume.delta_n_e.max())
-    if lowest + volume.ambient_n <= 0.0 or highest + volume.ambient_n > HIGHEST_INDEX:
-        raise SceneError("delta_n_e", "makes an index that is not between 0 and 100")
-
-
 def _rounding(voxels: float) -> float:
     if isinstance(voxels, bool) or not isinstance(voxels, int | float | np.number) or not 0.0 <= voxels <= 8.0:
         raise SceneError("rounding_voxels", f"is {voxels!r}", "use 0 to 8 voxels")
@@ -447,70 +350,3 @@ def _rounding(voxels: float) -> float:
 
 def _region_index(medium: Medium, channels: int) -> npt.NDArray[np.float64]:
     return np.asarray(medium.n_rgb if channels == 3 else [float(medium.n(LAMBDA_D_NM))], dtype=np.float64)
-
-
-def _common_shape(volume: Volume) -> tuple[int, int, int]:
-    if len(volume.regions) > MOST_REGIONS:
-        raise SceneError("regions", f"has {len(volume.regions)} bodies", f"at most {MOST_REGIONS} are possible")
-    first = volume.regions[0].sdf if volume.regions else volume.delta_n
-    if first is None:
-        raise SceneError("delta_n", "is missing, and there are no regions", "give one of them")
-    shape = np.shape(first)[:3]
-    check_size("regions[0].sdf" if volume.regions else "delta_n", shape)
-    for i, region in enumerate(volume.regions):
-        if region.sdf.shape != shape:
-            raise SceneError(f"regions[{i}].sdf", f"has shape {region.sdf.shape}, the first has {shape}")
-    z, y, x = (int(n) for n in shape)
-    return z, y, x
-
-
-def _voxels(
-    name: str, values: npt.ArrayLike, channels: int | None, shape: tuple[int, int, int] | None = None
-) -> Voxels:
-    """A checked, contiguous, read-only float32 copy. `channels`: None for a scalar, -1 for a scalar or three."""
-    array = real_array(name, values)
-    allowed: list[tuple[int, ...]] = [(), (3,)] if channels == -1 else [() if channels is None else (channels,)]
-    if array.ndim < 3 or array.shape[3:] not in allowed or (shape is not None and array.shape[:3] != shape):
-        where = "Z, Y, X" if shape is None else ", ".join(map(str, shape))
-        wanted = " or ".join(f"({', '.join([where, *map(str, a)])})" for a in allowed)
-        raise SceneError(name, f"has shape {array.shape}", f"give {wanted}")
-    check_size(name, array.shape[:3])
-    if array.dtype == np.float32 and array.flags.c_contiguous and not array.flags.writeable:
-        kept = array
-    else:
-        kept = np.array(array, dtype=np.float32, order="C")
-        kept.flags.writeable = False
-    if not np.isfinite(kept).all():
-        raise SceneError(name, f"has {int((~np.isfinite(kept)).sum())} values that are not finite")
-    return kept
-
-
-def _check_ranges(volume: Volume) -> None:
-    if volume.delta_n is not None and float(volume.delta_n.min()) + volume.ambient_n <= 0.0:
-        raise SceneError("delta_n", "makes the index 0 or less")
-    if volume.delta_n is not None and float(volume.delta_n.max()) + volume.ambient_n > HIGHEST_INDEX:
-        raise SceneError("n", f"reaches {float(volume.delta_n.max()) + volume.ambient_n:g}", "no matter is above 100")
-    for name in ("absorption", "scattering", "emission"):
-        values = getattr(volume, name)
-        if values is not None and float(values.min()) < 0.0:
-            raise SceneError(name, f"has {float(values.min()):g}", "use 0 or more")
-    if volume.anisotropy is not None and float(np.abs(volume.anisotropy).max()) >= 1.0:
-        raise SceneError("anisotropy", "has values outside (-1, 1)", "it is a mean cosine")
-    if volume.reflection is not None and not 0.0 <= volume.reflection.min() <= volume.reflection.max() <= 1.0:
-        raise SceneError("reflection", "has values outside 0 to 1", "give tint and roughness")
-    if volume.opaque is not None:
-        coverage = volume.opaque[..., 3]
-        if float(coverage.min()) < 0.0 or float(coverage.max()) > 1.0:
-            raise SceneError("opaque", "has a coverage outside 0 to 1")
-        if float(volume.opaque.min()) < 0.0:
-            raise SceneError("opaque", "has a negative colour")
-
-
-def _index(name: str, value: float) -> float:
-    try:
-        index = float(value)
-    except (TypeError, ValueError):
-        raise SceneError(name, f"is {value!r}", "give a number") from None
-    if not (np.isfinite(index) and index > 0.0):
-        raise SceneError(name, f"is {index:g}", "a refractive index is above 0")
-    return index

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pellucid.fields.composition import Matter, Part, can_compose, compose, interfere, matter_of
+from pellucid.fields.composition import can_compose, compose
+from pellucid.fields.reaching import Matter, Part, interfere, matter_of
 from pellucid.fields.volume import Volume
 
 if TYPE_CHECKING:
