@@ -49,8 +49,8 @@ class WaterQuality(Choices):
     fresnel : ``"exact"``, or ``"schlick"`` with the exponent `schlick_power` > 0.
     color : attenuation by what the water holds (``"physical"``), or towards one colour [mihalik2008, eqs. 4, 5].
     underside : from below, ``"exact"`` refraction with its window, or the rays of [mihalik2008, eq. 12].
-    shading_rate : pixels along the side of the squares that share one look at the water, 1 to 4; what cuts the water
-        stays sharp. A camera within the water, or without perspective, looks for every pixel.
+    shading_rate : pixels that share one look at the water, 1 to 16, in blocks that cover about squares of it; what cuts
+        the water stays sharp. A camera within the water, or without perspective, looks for every pixel.
     caustics : light that waves focus below them, worked out on the ``"gpu"``, the ``"cpu"``, or not at all.
     caustic_size : side of the map of it, texels, 16 to 4096.
     caustic_camera : looks along the ``"refracted"`` light or the ``"incident"`` one, as [mihalik2008, 8] does.
@@ -138,7 +138,7 @@ _WHOLE = {
     "march_steps": (1, 256),
     "texture_size": (16, 8192),
     "caustic_size": (16, 4096),
-    "shading_rate": (1, 4),
+    "shading_rate": (1, 16),
 }
 _PRESETS: dict[str, dict[str, Any]] = {
     "best": {},
@@ -147,7 +147,7 @@ _PRESETS: dict[str, dict[str, Any]] = {
         "reflection": "march",
         "march_steps": 8,
         "fallback": "environment",
-        "shading_rate": 2,
+        "shading_rate": 6,
         "texture_size": 384,
         "caustic_size": 256,
     },

@@ -35,6 +35,7 @@ WaterParams = struct(
         ("region", "u32"),  # of surroundings.submersion
         ("wave_layers", "u32"),
         ("time_s", "f32"),
+        ("block", "vec2u"),  # pixels that share a ray, from left to right and from top to bottom
         ("wave_tiles", ("vec4f", WAVE_LAYERS)),  # by layer: width and depth in metres, 1 where it repeats, 0
     ]
 )

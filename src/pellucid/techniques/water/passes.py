@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellucid.gpu import Device, RenderPass
+from pellucid.gpu.layout import offset_of
 from pellucid.gpu.modules import declared
 from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT, Targets
 from pellucid.scene.water_quality import (
@@ -21,12 +22,13 @@ from pellucid.scene.water_quality import (
     WaterQuality,
     quality_of,
 )
+from pellucid.techniques.water.blocks import Block, block_of, divided
 from pellucid.techniques.water.borders import OpenBorder
 from pellucid.techniques.water.caustics import WaterLight
 from pellucid.techniques.water.glow import WaterGlow
 from pellucid.techniques.water.layouts import WaterParams, WaterViews
 from pellucid.techniques.water.prepare import WaveMaps, parameters, same_surfaces, sources_of, surfaces_of, wave_maps
-from pellucid.techniques.water.region import Rectangle, covered
+from pellucid.techniques.water.region import covered
 from pellucid.techniques.water.ripple_maps import RippleMaps, ripples_for_device
 from pellucid.techniques.water.views import SurfacePictures, hidden_box, needs_pictures, quality_seen_from
 from pellucid.techniques.water.wave_moments import moment_levels
@@ -41,7 +43,7 @@ if TYPE_CHECKING:
 HIT_FORMAT = "rgba32float"
 WAVE_NAMES = ("wave_map", "wave_sampler", "wave_moments", "wave_texture", "moments_texture")
 NONE = [(0.0, 0.0, 0.0, 0.0)]
-NEAREST = ("water_hits", "water_squares", "opaque_color", "picture_depths", "picture_sampler")
+NEAREST = ("water_hits", "water_blocks", "opaque_color", "picture_depths", "picture_sampler")
 
 
 @dataclass
@@ -54,7 +56,7 @@ class Body:
     waves : its surface at `time_s`. version : counts changes of the waves.
     bindings : resources of bind group 0 by their WGSL names.
     pictures : of what is below and above it, where its quality looks things up.
-    ripples : what works out a layer of its waves on the device.
+    ripples : what works out a layer of its waves on the device. block : pixels that share a look, across and down.
     """
 
     item: Water
@@ -66,6 +68,7 @@ class Body:
     params: np.ndarray = field(default_factory=lambda: np.zeros((), WaterParams))
     pictures: SurfacePictures | None = None
     ripples: RippleMaps | None = None
+    block: Block = (1, 1)
     border: OpenBorder = field(default_factory=OpenBorder)
 
     def constants(self, quality: WaterQuality, sides_by_rays: bool) -> dict[str, float]:
@@ -179,9 +182,13 @@ class WaterTechnique:
             if name == "opaque_depth" or not outside:
                 size = (*targets.size, 1)
                 encoder.copy_texture_to_texture({"texture": drawn}, {"texture": copy}, size)
-        rate = body.quality.shading_rate if outside else 1
-        squares = -(-targets.size[0] // rate), -(-targets.size[1] // rate)
-        hits = self._target("water_hits", HIT_FORMAT, squares)
+        block = block_of(body.quality.shading_rate, surroundings.view) if outside else (1, 1)
+        if block != body.block:
+            body.block, body.params["block"] = block, block
+            record = body.params["block"].reshape(1, 2)
+            self.device.write(body.bindings["water"], record, offset_of(WaterParams, "block"))
+        blocks = -(-targets.size[0] // block[0]), -(-targets.size[1] // block[1])
+        hits = self._target("water_hits", HIT_FORMAT, blocks)
         bound = {**self._nothing, **body.bindings, **surroundings.bindings, **self._light.bindings(body)}
         bound |= {name: copy for name, (_, copy) in copies.items()}
         quality = quality_seen_from(surroundings.view, body.quality, body.item.level, body.waves.range_m)
@@ -190,9 +197,9 @@ class WaterTechnique:
             body.pictures.draw(encoder, body.item, quality, waves, surroundings, timer)
             bound |= body.pictures.bindings
         sides = needs_pictures(quality) and body.border.shows(body.item, body.waves.limits_m[0], surroundings)
-        constants = {**body.constants(quality, sides), "WATER_RATE": float(rate)}
+        constants = body.constants(quality, sides)
         composed = {**constants, **surroundings.shading_constants, **self._across(surroundings)}
-        if rate == 1:
+        if block == (1, 1):
             on_surface = {"scissor": region, "timer": timer}
             self._pass("find", constants).run(
                 encoder,
@@ -208,14 +215,14 @@ class WaterTechnique:
                 encoder, [targets.color_view], bindings=bound, label="water shade", **on_surface
             )
         else:
-            bound["water_squares"] = self._target("water_squares", COLOR_FORMAT, squares)
-            on_squares = {"scissor": _divided(region, rate), "timer": timer, "clear": NONE}
+            bound["water_blocks"] = self._target("water_blocks", COLOR_FORMAT, blocks)
+            on_blocks = {"scissor": divided(region, block), "timer": timer, "clear": NONE}
             self._pass("find_sparse", constants).run(
-                encoder, [hits.create_view()], bindings=bound, label="water search", **on_squares
+                encoder, [hits.create_view()], bindings=bound, label="water search", **on_blocks
             )
             bound["water_hits"] = hits
             self._pass("compose", composed).run(
-                encoder, [bound["water_squares"].create_view()], bindings=bound, label="water shade", **on_squares
+                encoder, [bound["water_blocks"].create_view()], bindings=bound, label="water shade", **on_blocks
             )
             self._pass("widen", constants).run(
                 encoder,
@@ -292,6 +299,7 @@ class WaterTechnique:
 
     def _write(self, body: Body) -> None:
         body.params = parameters(body.item, body.quality, body.waves, body.time_s)
+        body.params["block"] = body.block
         self.device.write(body.bindings["water"], body.params.reshape(1))
 
     def _pass(self, name: str, constants: dict[str, float]) -> RenderPass:
@@ -318,13 +326,6 @@ class WaterTechnique:
 def _breadth(box: Box) -> float:
     low, high = box
     return (high[0] - low[0]) * (high[2] - low[2])
-
-
-def _divided(region: Rectangle, rate: int) -> Rectangle:
-    """The squares of pixels that a part of the picture touches."""
-    left, top, width, height = region
-    first = left // rate, top // rate
-    return (*first, -(-(left + width) // rate) - first[0], -(-(top + height) // rate) - first[1])
 
 
 def _distance(item: Water, camera: Camera) -> float:

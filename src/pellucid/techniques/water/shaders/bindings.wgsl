@@ -13,5 +13,5 @@
 @group(0) @binding(9) var view_sampler: sampler;
 @group(0) @binding(10) var<uniform> water_views: WaterViews;
 @group(0) @binding(11) var opaque_color: texture_2d<f32>;  // what was drawn before
-@group(0) @binding(8) var water_squares: texture_2d<f32>;  // radiance and reversed depth of squares of pixels, 0 for no water
+@group(0) @binding(8) var water_blocks: texture_2d<f32>;  // radiance and reversed depth of blocks of pixels, 0 for no water
 @group(0) @binding(12) var opaque_depth: texture_depth_2d;

@@ -30,5 +30,5 @@ fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
         discard;
     }
     // Where pixels share a ray they look for how deep it went, which is linear in the picture on planes.
-    return vec4f(radiance, select(1.0, depth_of(p_ws), WATER_RATE > 1u));
+    return vec4f(radiance, select(1.0, depth_of(p_ws), water.block.x * water.block.y > 1u));
 }

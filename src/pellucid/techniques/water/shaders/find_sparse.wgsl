@@ -1,12 +1,12 @@
-// First pass where pixels share a ray: what each square of them shows of the water.
+// First pass where pixels share a ray: what each block of them shows of the water.
 //!import surroundings/shaders/full_picture
 //!import techniques/water/shaders/first
 
-// The ray through the middle, as far as what is drawn in the whole square; where something of it is nearer than the
+// The ray through the middle, as far as what is drawn in the whole block; where something of it is nearer than the
 // water, the ray of the pixel that shows most: so every point found is seen by some pixel.
 @fragment
 fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let drawn = square_depths(vec2i(position.xy));
+    let drawn = block_depths(vec2i(position.xy));
     var hit = WaterHit(WATER_NONE, 0.0, vec3f(0.0, 1.0, 0.0));
     var pick = 0u;
     for (var attempt = 0u; attempt < 2u; attempt++) {
@@ -25,18 +25,20 @@ fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     return water_record(hit, pick);
 }
 
-// Reversed depths of what is drawn in a square
-struct SquareDepths {
+// Reversed depths of what is drawn in a block
+struct BlockDepths {
     nearest: f32,
     farthest: f32,
     last: u32,  // which pixel shows the farthest, from 1
 }
 
-fn square_depths(square: vec2i) -> SquareDepths {
+fn block_depths(block: vec2i) -> BlockDepths {
     let last = vec2i(textureDimensions(opaque_depth)) - 1;
-    var depths = SquareDepths(0.0, 2.0, 0u);
-    for (var k = 0u; k < WATER_RATE * WATER_RATE; k++) {
-        let at = i32(WATER_RATE) * square + vec2i(vec2u(k % WATER_RATE, k / WATER_RATE));
+    var depths = BlockDepths(0.0, 2.0, 0u);
+    // Not the uniform alone, see light_count in surroundings/shaders/lights.wgsl
+    let count = min(water.block.x * water.block.y, textureDimensions(opaque_depth).x);
+    for (var k = 0u; k < count; k++) {
+        let at = vec2i(water.block) * block + vec2i(water_block_pixel(k));
         let depth = textureLoad(opaque_depth, min(at, last), 0);
         depths.last = select(depths.last, k + 1u, depth < depths.farthest);
         depths.farthest = min(depths.farthest, depth);

@@ -18,7 +18,7 @@ fn water_record(hit: WaterHit, pick: u32) -> vec4f {
     return vec4f(f32(hit.kind + HIT_KINDS * pick), hit.t, hit.normal.xz);
 }
 
-// Which ray of a square it is, see rate.wgsl
+// Which ray of a block it is, see block.wgsl
 fn water_hit_pick(record: vec4f) -> u32 {
     return u32(record.x + 0.5) / HIT_KINDS;
 }

@@ -29,7 +29,7 @@ struct InterfaceLight {
 // through one place.
 fn interface_light(hit: WaterHit, meets: bool, p_ws: vec3f, direction_ws: vec3f) -> InterfaceLight {
     let from_within = hit.kind == WATER_BELOW;
-    // That of a pixel where a square of them shares this too: its mean slope would mirror less than all of theirs.
+    // That of a pixel where a block of them shares this too: its mean slope would mirror less than all of theirs.
     let footprint = footprint_m(p_ws) * inverseSqrt(max(abs(direction_ws.y), 1e-3));
     let at = wave_point(p_ws.xz, footprint);
     // Of waves that a pixel hides those are seen that lean towards the viewer.

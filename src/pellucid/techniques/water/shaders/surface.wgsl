@@ -1,6 +1,6 @@
 // Where a ray meets the surface of water, from either side.
 //!import techniques/water/shaders/body
-//!import techniques/water/shaders/rate
+//!import techniques/water/shaders/block
 
 const MEET_STEPS = 192u;
 const MEET_REFINEMENTS = 10u;
@@ -22,7 +22,7 @@ fn water_crossing(origin_ws: vec3f, direction_ws: vec3f, start: f32, end: f32, s
     for (var k = 0u; k < MEET_STEPS && t < last && (gap > 0.0 || k == 0u); k++) {
         t_before = t;
         gap_before = gap;
-        let pixel = f32(WATER_RATE) * frame.pixel_footprint * select(t, 1.0, parallel);
+        let pixel = f32(water.block.y) * frame.pixel_footprint * select(t, 1.0, parallel);
         let step = max(gap, MEET_PIXELS * pixel) / steepness;
         t = select(min(t + max(step, 1e-3 * water.wave_cell_m), last), last, k + 1u == MEET_STEPS);
         gap = side * water_gap(origin_ws, direction_ws, t);

@@ -1,6 +1,5 @@
-// Third pass where pixels share a ray: each takes from the four squares around it that show water, at their mean depth.
+// Third pass where pixels share a ray: each takes from the four blocks around it that show water, at their mean depth.
 //!import surroundings/shaders/full_picture
-//!import techniques/water/shaders/rate
 //!import techniques/water/shaders/bindings
 
 struct WaterWidened {
@@ -10,21 +9,21 @@ struct WaterWidened {
 
 @fragment
 fn fs_main(@builtin(position) position: vec4f) -> WaterWidened {
-    let last = vec2i(textureDimensions(water_squares)) - 1;
-    let at = position.xy / f32(WATER_RATE) - 0.5;
+    let last = vec2i(textureDimensions(water_blocks)) - 1;
+    let at = position.xy / vec2f(water.block) - 0.5;
     let low = vec2i(floor(at));
     let share = at - floor(at);
     var sum = vec4f(0.0);
     var weights = 0.0;
-    var own = 0.0;  // of the square that the pixel is in
+    var own = 0.0;  // of the block that the pixel is in
     for (var k = 0; k < 4; k++) {
         let corner = vec2i(k & 1, k >> 1);
-        let shown = textureLoad(water_squares, clamp(low + corner, vec2i(0), last), 0);
+        let shown = textureLoad(water_blocks, clamp(low + corner, vec2i(0), last), 0);
         let near = mix(1.0 - share, share, vec2f(corner));
         let weight = select(0.0, near.x * near.y, shown.a > 0.0);
         sum += weight * shown;
         weights += weight;
-        own = select(own, shown.a, all(low + corner == vec2i(position.xy) / i32(WATER_RATE)));
+        own = select(own, shown.a, all(low + corner == vec2i(position.xy) / vec2i(water.block)));
     }
     let mean = sum / max(weights, 1e-6);
     let drawn = textureLoad(opaque_depth, vec2i(position.xy), 0);
