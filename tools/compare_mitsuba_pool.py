@@ -5,8 +5,7 @@ chance, since no place under water can be connected to it: the lamp is therefore
 has it as `DirectionalLight(angular_radius_deg=...)`. The sky is even, and what stands in it is dark, since Pellucid
 does not follow light from one matt surface to another.
 
-A lamp as wide as this blurs its caustics by more than the few texels that one map spreads a photon over. So there is a
-picture with the lamp in 32 parts beside that of one wide lamp.
+A picture with the lamp in 32 parts stands beside that of one wide lamp, whose photons come from parts of its disc.
 
 Run ``python tools/compare_mitsuba_pool.py --output out/mitsuba_pool`` (needs the extra `compare`). It writes both
 pictures, the differences, `comparison.json`, and prints a table. FLIP as in ``compare_povray.py``.

@@ -48,7 +48,7 @@ def prepare(renderer: Renderer, *meshes: pl.Mesh, shadows: bool = True, **kept: 
     scene = pl.Scene(camera=camera, environment=UPPER, objects=[*meshes, water])
     renderer._prepare(scene, (8, 8))
     renderer._simulate(0.0)
-    renderer._illuminate(scene, {})
+    renderer._illuminate(scene)
 
 
 def seen_share(renderer: Renderer, p: np.ndarray, n: np.ndarray, count: int = 2000) -> float:

@@ -17,6 +17,8 @@ MAX_WATER_LIGHTS = 4  # lights with caustics in each of them
 
 OPEN_SIZE = (24, 8, 24)  # places along x, y, z of each water from which the sky is looked for, see open_sky.py
 
+SCATTER_DOWN, SCATTER_AROUND = 33, 16  # rows and columns of what water scatters of the sky, see sky_scatter.py
+
 LIGHT_DIRECTIONAL = 0
 LIGHT_POINT = 1
 LIGHT_AREA = 2
@@ -180,5 +182,6 @@ SubmersionParams = struct(
             ("vec4f", MAX_WATERS * DIFFUSE_ENTRIES),
         ),  # share of the sky left at a depth
         ("back", ("vec4f", MAX_WATERS * DIFFUSE_ENTRIES)),  # share of matt light that comes back
+        ("scatter", ("vec4f", MAX_WATERS * SCATTER_DOWN * SCATTER_AROUND)),  # of the sky's light, by direction of view
     ]
 )

@@ -29,8 +29,16 @@ from pellucid.errors import SceneError
 from pellucid.optics import fresnel_dielectric
 from pellucid.surroundings.diffuse import diffuse_tables
 from pellucid.surroundings.environment import irradiance_basis, row_solid_angles
-from pellucid.surroundings.layouts import DIFFUSE_ENTRIES, MAX_WATER_LIGHTS, MAX_WATERS, SubmersionParams
+from pellucid.surroundings.layouts import (
+    DIFFUSE_ENTRIES,
+    MAX_WATER_LIGHTS,
+    MAX_WATERS,
+    SCATTER_AROUND,
+    SCATTER_DOWN,
+    SubmersionParams,
+)
 from pellucid.surroundings.open_sky import OpenSkyMaps
+from pellucid.surroundings.sky_scatter import scatter_table, window_light
 
 if TYPE_CHECKING:
     from pellucid.gpu import Device
@@ -88,6 +96,7 @@ class SkyThroughSurface:
     irradiance : (3,) of the sky on a level surface. axis : (3,) unit, where it comes from, in the environment's space.
     ground : (3,) irradiance from below. back : (3,) share of matt light that the surface throws back.
     air : the same above the surface; None there.
+    window : directions and light of `sky_scatter.window_light`. tables : by asymmetry, of `scatter_table`.
     """
 
     irradiance: np.ndarray = field(default_factory=lambda: np.zeros(3))
@@ -95,6 +104,15 @@ class SkyThroughSurface:
     ground: np.ndarray = field(default_factory=lambda: np.zeros(3))
     back: np.ndarray = field(default_factory=lambda: np.zeros(3))
     air: SkyThroughSurface | None = None
+    window: tuple[np.ndarray, np.ndarray] | None = None
+    tables: dict[float, np.ndarray] = field(default_factory=dict)
+
+    def scattered(self, asymmetry: float) -> np.ndarray:
+        """Table of what water of a mean cosine of scattering makes of it; the same array each time."""
+        if asymmetry not in self.tables:
+            ways, light = self.window or (np.array([(0.0, 1.0, 0.0)]), np.zeros((1, 3)))
+            self.tables[asymmetry] = scatter_table(ways, light, asymmetry)
+        return self.tables[asymmetry]
 
 
 class Submersion:
@@ -192,6 +210,9 @@ class Submersion:
             p["slope"][k * MAX_WATER_LIGHTS + light, :2] = slope
             p["slope"][k * MAX_WATER_LIGHTS + light, 2] = light < len(region.shadows) and region.shadows[light]
             p["slope"][k * MAX_WATER_LIGHTS + light, 3] = light < len(region.near) and region.near[light]
+        if any(region.scattering_per_m):
+            count = SCATTER_DOWN * SCATTER_AROUND
+            p["scatter"][k * count : (k + 1) * count] = sky.scattered(region.asymmetry).reshape(-1, 4)
         down, back = diffuse_tables(1.0, region.n)
         rows = slice(k * DIFFUSE_ENTRIES, (k + 1) * DIFFUSE_ENTRIES)
         p["down"][rows], p["back"][rows] = down / np.maximum(down[-1], 1e-9), back
@@ -263,6 +284,7 @@ def sky_through(pixels: np.ndarray, sh: np.ndarray, n: Triple) -> SkyThroughSurf
         rho = min(below / above, 1.0) if above > 0.0 else 0.0
         out.ground[c] = below * index**2 * (1.0 - back) / max(1.0 - rho * back, 1e-6)
         out.back[c] = back
+    out.window = window_light(pixels, n[1], out.irradiance)
     length = float(np.linalg.norm(vector))
     if length > 0.0:
         out.axis = vector / length

@@ -2,6 +2,7 @@
 // of the sky.
 //!import optics/phase
 //!import surroundings/shaders/beam
+//!import surroundings/shaders/environment
 //!import surroundings/shaders/lights
 //!import surroundings/shaders/submerged_sky
 //!import surroundings/shaders/submerged_sun
@@ -31,15 +32,28 @@ fn sun_beam(water: u32, light: u32, direction_ws: vec3f) -> WaterBeam {
     return WaterBeam(scattered, beam_attenuation(water, -1.0) / to_light.y, beam_attenuation(water, cosine));
 }
 
-// The sky as one broad beam, the light of an even patch as wide as Snell's window: its mean cosine to its middle is
-// (1 + cos)/2 of its half angle. Smeared over it, the phase function is one of a mean cosine as much less.
+const SCATTER_DOWN = 33u;    // layouts.SCATTER_DOWN
+const SCATTER_AROUND = 16u;  // layouts.SCATTER_AROUND
+
+// The sky as one beam: what all directions of Snell's window send into the way, with the mean of their angles and of how
+// steeply they come (sky_scatter.py)
 fn sky_beam(water: u32, direction_ws: vec3f) -> WaterBeam {
-    let mean = 0.5 + 0.5 * sqrt(1.0 - submersion.window[water].a);
-    let cosine = dot(environment_space(direction_ws), submersion.sky_axis[water].xyz);
-    let irradiance = frame.environment_intensity * submersion.sky[water].rgb / mean;
-    let matter = submersion.scattering[water];
-    let scattered = irradiance * matter.rgb * henyey_greenstein(cosine, matter.a * mean);
-    return WaterBeam(scattered, beam_attenuation(water, -1.0) / mean, beam_attenuation(water, cosine));
+    let at = environment_uv(environment_space(direction_ws)) * vec2f(f32(SCATTER_AROUND), f32(SCATTER_DOWN - 1u));
+    let row = min(floor(at.y), f32(SCATTER_DOWN - 2u));
+    let column = floor(at.x - 0.5);
+    let share = vec2f(at.x - 0.5 - column, at.y - row);
+    var logarithm = vec3f(0.0);
+    var means = vec2f(0.0);
+    for (var k = 0u; k < 4u; k++) {
+        let corner = vec2u(k & 1u, k >> 1u);
+        let around = (u32(column + f32(SCATTER_AROUND)) + corner.x) % SCATTER_AROUND;
+        let entry = submersion.scatter[(water * SCATTER_DOWN + u32(row) + corner.y) * SCATTER_AROUND + around];
+        let weight = mix(1.0 - share, share, vec2f(corner));
+        logarithm += weight.x * weight.y * entry.rgb;
+        means += weight.x * weight.y * unpack2x16float(bitcast<u32>(entry.a));
+    }
+    let scattered = frame.environment_intensity * exp2(logarithm) * submersion.scattering[water].rgb;
+    return WaterBeam(scattered, beam_attenuation(water, -1.0) * means.y, beam_attenuation(water, means.x));
 }
 
 // 1/m, of light on its way to the viewer that is scattered by an angle of that cosine. What comes from behind the viewer
