@@ -221,6 +221,8 @@ class Renderer:
         """Encode illuminate, opaque, refractive: everything up to the linear picture.
 
         Each technique draws all of its objects; they follow one another far to near, by the nearest object of each.
+        Water comes first, for what has no surface of its own lies over it, or last, for it dims what is in it with the
+        camera.
         """
         around, timer = self.surroundings, self._timer
         around.set_camera(scene.camera, targets.size, offset, index)
@@ -231,7 +233,11 @@ class Renderer:
         nearest: dict[type, float] = {}
         for item in (o for o in scene.objects if type(o) in TECHNIQUES):
             nearest[type(item)] = min(nearest.get(type(item), np.inf), _distance(item, scene.camera))
-        for kind in sorted(nearest, key=nearest.__getitem__, reverse=True):
+        order = sorted(nearest, key=nearest.__getitem__, reverse=True)
+        if Water in order:
+            order.remove(Water)
+            order.insert(len(order) if self._techniques[Water].holds(scene.camera) else 0, Water)
+        for kind in order:
             self._techniques[kind].draw(encoder, targets, scene.camera, around, timer)
         return encoder
 

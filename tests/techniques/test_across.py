@@ -99,3 +99,54 @@ def test_a_ball_over_water_shows_the_water_and_not_the_dry_floor(renderer: pl.Re
     kept, mirrored = np.exp(-0.1 * 0.6), SKY * fresnel_dielectric(1.0, 1.0, blue.n_d)
     expected = kept * (pictures[0][16, 16] - mirrored) + kept**2 * mirrored  # the sky is mirrored through the ball, too
     np.testing.assert_allclose(pictures[1][16, 16], expected, rtol=1e-3)
+
+
+def ink_ball(medium: object, **placement: object) -> pl.RefractiveVolume:
+    return pl.RefractiveVolume.from_sdf(lambda x, y, z: np.sqrt(x**2 + y**2 + z**2) - 0.3, medium, 48, 0.8, **placement)
+
+
+def test_from_below_a_ball_over_the_water_is_in_the_window_and_nowhere_else(renderer: pl.Renderer) -> None:
+    """It swallows all that enters. Where the straight way leads to it but the surface mirrors all, the floor is seen."""
+    floor = pl.Mesh.plane(40.0, position=(0, -2.0, 0), base_color=(0, 0, 0), specular=0.0, emission=(1, 1, 1))
+    pool = pl.Water(level=0.0, extent_m=40.0, medium=1.333)
+    camera, size = pl.Camera(position=(0, -1.0, 0), target=(1.0, 0.0, 0.0), fov_deg=90), (48, 48)
+    origins, ways, _ = rays(camera, size)
+    up = ways[:, 1]
+    steep = np.arcsin(np.minimum(1.333 * np.sqrt(1.0 - up**2), 1.0))
+    for place in ((2.4, 0.4, 0.0), (1.2, 0.5, 0.0)):
+        ball = ink_ball(pl.media.constant(1.0, (1e4, 1e4, 1e4)), position=place)
+        scene = pl.Scene(camera=camera, environment=even_sky(), objects=[floor, pool, ball])
+        picture = renderer.render(scene, size).radiance.reshape(-1, 3)[:, 1]
+        entry = origins - (origins[:, 1] / np.maximum(up, 1e-9))[:, None] * ways
+        bent = np.stack([1.333 * ways[:, 0], np.cos(steep), 1.333 * ways[:, 2]], axis=1)
+        off = np.linalg.norm(np.cross(np.array(place) - entry, bent), axis=1) / 0.3
+        straight = np.linalg.norm(np.cross(np.array(place) - origins, ways), axis=1) / 0.3
+        share = fresnel_dielectric(up, 1.333, 1.0)
+        total = (up > 0.25) & (share == 1.0)  # and the floor reaches as far
+        window = (up > 0.01) & (share < 0.5)
+        hit, missed = window & (off < 0.95), window & (off > 1.1)
+        assert hit.sum() > 5 and ((total & (straight < 1.0)).sum() > 5 or place[0] < 2.0)
+        np.testing.assert_allclose(picture[total], 1.0 / 1.333**2, rtol=1e-3)
+        np.testing.assert_allclose(picture[hit], (share / 1.333**2)[hit], rtol=1e-3)
+        np.testing.assert_allclose(picture[missed], (share / 1.333**2 + (1.0 - share) * SKY)[missed], rtol=1e-3)
+
+
+def test_a_ball_drawn_in_water_is_what_stands_for_it_there(renderer: pl.Renderer) -> None:
+    """Half in a pool, from below and from above: the picture of the volume against rays through its triangles."""
+    floor = pl.Mesh.plane(8.0, position=(0, -1.0, 0), base_color=(0, 0, 0), specular=0.0, emission=(1, 1, 1))
+    pool = pl.Water(level=0.0, extent_m=8.0, medium=1.333)
+    tinted = pl.media.constant(1.5, (0.5, 1.0, 2.0))
+    for place, look in (((0.0, -0.5, 2.0), (0.0, -0.2, 0.0)), ((0.0, 1.2, 1.6), (0.0, 0.0, 0.0))):
+        camera, size = pl.Camera(position=place, target=look, fov_deg=24), (40, 40)
+        ball = ink_ball(tinted, position=(0.0, 0.0, 0.0), dispersion=False)
+        scene = pl.Scene(camera=camera, environment=even_sky(), objects=[floor, pool, ball])
+        frame = renderer.render(scene, size)
+        origins, ways, _ = rays(camera, size)
+        seen = Query(renderer.surroundings).radiance(origins, ways, across=True)
+        seen /= 1.333**2 if place[1] < 0.0 else 1.0  # a camera in water looks out through a port
+        off = np.linalg.norm(np.cross(origins, ways), axis=1) / 0.3
+        height = (origins + np.sum(-origins * ways, axis=1)[:, None] * ways)[:, 1]
+        own = (off < 0.8) & ((height < -0.05) if place[1] < 0.0 else (height > 0.05))
+        apart = np.abs(seen - frame.radiance.reshape(-1, 3))[own] / seen[own]
+        assert own.sum() > 100
+        assert np.median(apart) < 0.01 and np.quantile(apart, 0.9) < 0.06

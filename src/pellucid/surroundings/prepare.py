@@ -16,7 +16,7 @@ from pellucid.surroundings.submersion import SkyThroughSurface, Submersion, sky_
 
 if TYPE_CHECKING:
     from pellucid.gpu import Device
-    from pellucid.scene import Camera, Environment, Mesh, Scene
+    from pellucid.scene import Camera, Environment, Mesh, Scene, Water
 
 RAY_EPSILON = 2e-6  # of the largest coordinate: some rounding steps of a 32-bit float
 
@@ -38,7 +38,7 @@ class Surroundings:
     shadow_lights : which light of the scene each shadow map belongs to.
     caustics : light of refractive matter on the meshes.
     view : the camera, as `set_camera` was told.
-    submersion : water that they stand in.
+    submersion : water that they stand in. waters : of the scene, as it describes them.
     """
 
     view: View
@@ -71,6 +71,7 @@ class Surroundings:
         self._far_lamps = 0
         self._albedo = geometry.albedo(())
         self.caustics = CausticMaps(device, self._resources)
+        self.waters: tuple[Water, ...] = ()
         self.submersion = Submersion(device, self._resources)
         self._viewed: tuple[Camera, tuple[int, int]] | None = None
         self._aimed: tuple[tuple[float, float], int] | None = None
@@ -159,8 +160,9 @@ class Surroundings:
         interfaces : the same of transparent matter, met by rays that ask for it (`across_constants`); told apart by
             identity.
         """
-        from pellucid.scene import Mesh
+        from pellucid.scene import Mesh, Water
 
+        self.waters = tuple(o for o in scene.objects if isinstance(o, Water))
         meshes = [o for o in scene.objects if isinstance(o, Mesh)] + list(stand_ins)
         self._shown = len(meshes) - len(stand_ins)
         try:

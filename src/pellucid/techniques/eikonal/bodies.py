@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from pellucid.scene import Quality, RefractiveVolume
+    from pellucid.scene import Quality, RefractiveVolume, Water
     from pellucid.techniques.eikonal.hulls import Hull
     from pellucid.techniques.eikonal.prepare import Prepared
     from pellucid.techniques.eikonal.proxies import Box
@@ -29,7 +29,7 @@ class Body:
     hull : where rays of the picture begin, within the box.
     quality : how carefully rays are bent.
     number : its place among the bodies of the scene.
-    meets_meshes : opaque meshes reach into its box.
+    meets_meshes : opaque meshes reach into its box. water : it reaches into that.
     light : textures "fluence_field" and "light_field" over the prepared box, once light has been followed through it.
     """
 
@@ -43,4 +43,18 @@ class Body:
     hull: Hull
     number: int = 0
     meets_meshes: bool = False
+    water: Water | None = None
     light: dict[str, Any] = field(default_factory=dict)
+
+    def write_water(self, record: np.ndarray) -> None:
+        """Fill in what VolumeParams says of the water that it reaches into: there, what is ambient changes."""
+        if self.water is not None:
+            record["wet_low"], record["wet_high"] = self.water.bounds_m
+            record["wet_level_m"] = self.water.level
+            record["wet_n"], record["dry_n"] = self.water.matter.n_d, self.water.ambient_n
+
+    @property
+    def around(self) -> tuple[Any, ...]:
+        """What refraction at its surfaces depends on besides it."""
+        water = self.water
+        return () if water is None else (water.bounds_m, water.level, water.matter.n_d, water.ambient_n)

@@ -46,6 +46,11 @@ VolumeParams = struct(
         ("matter_half", "vec3f"),  # of the box that the fields of matter fill, object metres
         ("body", "u32"),  # its number among the bodies that rays go between
         ("body_count", "u32"),
+        ("wet_low", "vec2f"),  # of a water that the volume reaches into: corners of its rectangle along x and z, metres
+        ("wet_high", "vec2f"),
+        ("wet_level_m", "f32"),  # far below everything where there is none
+        ("wet_n", "f32"),  # index in it, and of what is around it
+        ("dry_n", "f32"),
     ]
 )
 

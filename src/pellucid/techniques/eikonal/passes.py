@@ -34,7 +34,7 @@ from pellucid.techniques.eikonal.resources import (
     scatters,
     upload,
 )
-from pellucid.techniques.eikonal.stand_in import StandIns
+from pellucid.techniques.eikonal.stand_in import StandIns, water_about
 from pellucid.techniques.eikonal.wavelengths import at_sample, common_draws
 
 if TYPE_CHECKING:
@@ -246,6 +246,8 @@ class EikonalTechnique:
 
     def _write_parameters(self, body: Body, surroundings: Surroundings) -> None:
         body.meets_meshes = _meets_meshes(body, body.box, surroundings)
+        abouts = (water_about(item, surroundings.waters) for item in body.objects)
+        body.water = next((water for water in abouts if water is not None), None)
         self._write_volume(body)
 
     def _write_volume(self, body: Body) -> None:
@@ -256,6 +258,7 @@ class EikonalTechnique:
             self._brdfs.write(record, body.objects[0])
             record["body"], record["body_count"] = body.number, len(self.bodies)
             body.hull.write(record)
+            body.write_water(record)
             self.device.write(uniform, record.reshape(1))
             if body.prepared.crystals is not None:
                 crystals = body.prepared.crystals.record(channel)
@@ -439,4 +442,5 @@ def _look_of(body: Body) -> LightQuality:
 def _light_state(body: Body, surroundings: Surroundings) -> Any:
     """What the light in a body depends on; lamps and meshes count their changes in the version of the shadows."""
     matter = tuple(id(c) for c in body.textures.channels)
-    return (matter, body.world.tobytes(), _look_of(body), body.quality, surroundings.shadow_version, body.meets_meshes)
+    own = (matter, body.world.tobytes(), _look_of(body), body.quality)
+    return (*own, surroundings.shadow_version, body.meets_meshes, body.around)

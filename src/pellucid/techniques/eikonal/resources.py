@@ -159,7 +159,8 @@ def parameters(
     out["world_from_object"] = np.asarray(world_from_object, np.float64).T
     out["object_from_world"] = np.linalg.inv(np.asarray(world_from_object, np.float64)).T
     out["half_extent"] = 0.5 * np.array(prepared.extent_m)
-    out["ambient_n"] = prepared.ambient_n
+    out["ambient_n"] = out["dry_n"] = out["wet_n"] = prepared.ambient_n
+    out["wet_level_m"] = -FAR
     out["proxy_center"], out["proxy_half"] = box or whole_box(prepared)
     out["scale"] = scale_of(world_from_object)
     out["voxel"] = prepared.voxel

@@ -63,6 +63,12 @@ class StandIns:
 
 def around_n(item: RefractiveVolume, waters: Sequence[Water]) -> float:
     """Index of what counts as air about a volume: that above a water that it reaches into, or its own ambient one."""
+    water = water_about(item, waters)
+    return item.volume.ambient_n if water is None else water.ambient_n
+
+
+def water_about(item: RefractiveVolume, waters: Sequence[Water]) -> Water | None:
+    """The first water that the box of a volume reaches into."""
     world = item.object_to_world()
     around = corners((np.zeros(3), 0.5 * np.array(item.volume.extent_m))) @ world[:3, :3].T + world[:3, 3]
     low, high = around.min(axis=0), around.max(axis=0)
@@ -70,8 +76,8 @@ def around_n(item: RefractiveVolume, waters: Sequence[Water]) -> float:
         (x_low, z_low), (x_high, z_high) = water.bounds_m
         beside = high[0] < x_low or low[0] > x_high or high[2] < z_low or low[2] > z_high
         if not beside and low[1] < water.level:
-            return water.ambient_n
-    return item.volume.ambient_n
+            return water
+    return None
 
 
 def place(item: RefractiveVolume, surfaces: Sequence[Surface], around: float) -> list[Interface]:
@@ -87,14 +93,14 @@ def place(item: RefractiveVolume, surfaces: Sequence[Surface], around: float) ->
 
 
 def _matter(item: RefractiveVolume, number: int, around: float) -> tuple[float, Any]:
-    """Index over that around, and absorption, 1/m of the world, where fields of the volume count as even."""
+    """Index over that around, and absorption, 1/m, where fields of the volume count as even."""
     if number < 0:
         return 0.0, NOTHING
     volume, region = item.volume, item.volume.regions[number]
     absorption = np.asarray(region.medium.absorption_rgb_per_m, np.float64)
     if volume.absorption is not None:
         absorption = absorption + volume.absorption[region.sdf < 0.0].mean(axis=0)
-    r, g, b = (float(a) / item.scale for a in absorption)
+    r, g, b = (float(a) for a in absorption)
     return region.medium.n_d / around, (r, g, b)
 
 

@@ -158,11 +158,16 @@ class WaterTechnique:
         boxes = [hidden_box(body.item, body.waves.limits_m, view) for body in self.bodies]
         return max((box for box in boxes if box is not None), key=_breadth, default=None)
 
+    def holds(self, camera: Camera) -> bool:
+        """Whether a camera may be in a body of water: below its highest wave."""
+        return any(_may_hold(body, camera) for body in self.bodies)
+
     def draw(
         self, encoder: Any, targets: Targets, camera: Camera, surroundings: Surroundings, timer: Any = None
     ) -> None:
         """Draw every body of water into colour and depth, far to near."""
         away = sorted(self.bodies, key=lambda body: _distance(body.item, camera), reverse=True)
+        away.sort(key=lambda body: _may_hold(body, camera))
         for body in away:
             self._draw(encoder, body, targets, surroundings, timer)
 
@@ -326,6 +331,12 @@ class WaterTechnique:
 def _breadth(box: Box) -> float:
     low, high = box
     return (high[0] - low[0]) * (high[2] - low[2])
+
+
+def _may_hold(body: Body, camera: Camera) -> bool:
+    x, y, z = camera.position
+    (x_low, z_low), (x_high, z_high) = body.item.bounds_m
+    return x_low <= x <= x_high and z_low <= z <= z_high and y < body.item.level + body.waves.range_m[1]
 
 
 def _distance(item: Water, camera: Camera) -> float:

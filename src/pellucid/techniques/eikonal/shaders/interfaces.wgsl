@@ -10,9 +10,16 @@ const SHORTEST_STRIDE = 0.3;       // voxels
 const CAUTION = 0.9;               // of the sampled distance, whose interpolation is not exactly a distance
 
 fn region_index(region: u32, x: vec3f) -> f32 {
-    if (region >= AMBIENT) { return volume.ambient_n; }
+    if (region >= AMBIENT) { return ambient_index(x); }
     if (GRADED && region == 0u) { return index_at(x); }
     return volume.region_n[region];
+}
+
+// Air, or level water that the volume reaches into
+fn ambient_index(x: vec3f) -> f32 {
+    let p_ws = (volume.world_from_object * vec4f(x, 1.0)).xyz;
+    let within = all(p_ws.xz >= volume.wet_low) && all(p_ws.xz <= volume.wet_high);
+    return select(volume.dry_n, volume.wet_n, within && p_ws.y < volume.wet_level_m);
 }
 
 fn is_graded(region: u32) -> bool {
