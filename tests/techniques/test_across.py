@@ -24,9 +24,11 @@ def even_sky() -> pl.Environment:
     return pl.Environment.constant((SKY, SKY, SKY))
 
 
-def test_a_tank_is_mirrored_in_a_pool_by_both_their_reflectances(renderer: pl.Renderer) -> None:
+@pytest.mark.parametrize("technique", ["best", "fast"])
+def test_a_tank_is_mirrored_in_a_pool_by_both_their_reflectances(renderer: pl.Renderer, technique: str) -> None:
     """Both hold ink, so that the sky alone is seen: mirrored once, by the pool, or by a side of the tank as well."""
-    pool = pl.Water(level=0.0, extent_m=(40.0, 10.0), center=(0.0, 5.0), medium=BLACK)
+    quality = pl.WaterQuality.of(technique, fresnel="exact", shading_rate=1)
+    pool = pl.Water(level=0.0, extent_m=(40.0, 10.0), center=(0.0, 5.0), medium=BLACK, quality=quality)
     tank = pl.Water(level=1.0, extent_m=(40.0, 2.0), center=(0.0, -2.0), medium=BLACK)
     camera, size = pl.Camera(position=(0, 1.0, 4.0), target=(0, 0.0, 1.0), fov_deg=40), (24, 24)
     scene = pl.Scene(camera=camera, environment=even_sky(), objects=[pool, tank])
@@ -63,14 +65,15 @@ def test_what_stands_for_level_water_is_what_its_own_picture_shows(renderer: pl.
     assert np.quantile(apart, 0.95) < 1e-3 and apart.mean() < 1e-3
 
 
-def test_a_ball_of_glass_is_seen_in_and_under_the_water_that_it_lies_in(renderer: pl.Renderer) -> None:
+@pytest.mark.parametrize("technique", ["best", "fast"])
+def test_a_ball_of_glass_is_seen_in_the_water_that_it_lies_in(renderer: pl.Renderer, technique: str) -> None:
     """Red glass of the index of water, all of it under water: it takes green and blue from the light of the floor."""
     floor = pl.Mesh.plane(8.0, position=(0, -1.0, 0), base_color=(0, 0, 0), specular=0.0, emission=(1, 1, 1))
     red = pl.media.constant(1.333, (0.0, 50.0, 50.0))
     ball = pl.RefractiveVolume.from_sdf(
         lambda x, y, z: np.sqrt(x**2 + y**2 + z**2) - 0.3, red, 32, 0.8, position=(0.0, -0.5, 0.0)
     )
-    pool = pl.Water(level=0.0, extent_m=8.0, medium=1.333)
+    pool = pl.Water(level=0.0, extent_m=8.0, medium=1.333, technique=technique)
     camera, size = pl.Camera(position=(0, 3.0, 0.001), target=(0, 0, 0), fov_deg=40), (33, 33)
     scene = pl.Scene(camera=camera, environment=even_sky(), objects=[floor, ball, pool])
     frame = renderer.render(scene, size)
@@ -106,7 +109,7 @@ def ink_ball(medium: object, **placement: object) -> pl.RefractiveVolume:
 
 
 def test_from_below_a_ball_over_the_water_is_in_the_window_and_nowhere_else(renderer: pl.Renderer) -> None:
-    """It swallows all that enters. Where the straight way leads to it but the surface mirrors all, the floor is seen."""
+    """It swallows all that enters. Where the straight way leads to it and the surface mirrors all, the floor is seen."""
     floor = pl.Mesh.plane(40.0, position=(0, -2.0, 0), base_color=(0, 0, 0), specular=0.0, emission=(1, 1, 1))
     pool = pl.Water(level=0.0, extent_m=40.0, medium=1.333)
     camera, size = pl.Camera(position=(0, -1.0, 0), target=(1.0, 0.0, 0.0), fov_deg=90), (48, 48)
@@ -150,3 +153,20 @@ def test_a_ball_drawn_in_water_is_what_stands_for_it_there(renderer: pl.Renderer
         apart = np.abs(seen - frame.radiance.reshape(-1, 3))[own] / seen[own]
         assert own.sum() > 100
         assert np.median(apart) < 0.01 and np.quantile(apart, 0.9) < 0.06
+
+
+def test_a_sheet_mirrors_a_tank_of_water(renderer: pl.Renderer) -> None:
+    """The tank holds ink: beside that of the sky it takes all from what the sheet mirrors."""
+    sheet = pl.RefractiveSheet(np.ones((4, 4, 3), np.float32), 0.2, 4.0, medium=1.333)
+    tank = pl.Water(level=3.0, extent_m=(20.0, 2.0), center=(0.0, -3.0), medium=BLACK)
+    camera, size = pl.Camera(position=(0, 1.0, 3.0), target=(0, 0.0, 0.0), fov_deg=20), (16, 16)
+    with_tank, alone = (
+        renderer.render(pl.Scene(camera=camera, environment=even_sky(), objects=objects), size).radiance[..., 1].ravel()
+        for objects in ([sheet, tank], [sheet])
+    )
+    origins, ways, _ = rays(camera, size)
+    mirrored = fresnel_dielectric(-ways[:, 1], 1.0, 1.333) * SKY
+    lost = mirrored * (1.0 - fresnel_dielectric(-ways[:, 2], 1.0, tank.matter.n_d))
+    on_sheet = (origins - (origins[:, 1] / ways[:, 1])[:, None] * ways)[:, 2] > -1.9
+    assert on_sheet.sum() > 100
+    np.testing.assert_allclose((alone - with_tank)[on_sheet], lost[on_sheet], rtol=5e-3)

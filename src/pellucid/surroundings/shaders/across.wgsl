@@ -83,6 +83,22 @@ fn across(first: AcrossRay, fades: bool) -> Across {
     return seen;
 }
 
+// Whether a ray meets glass, or in air a water, within a way: what no picture of meshes shows
+fn across_stands(origin_ws: vec3f, direction_ws: vec3f, way_m: f32, water: i32) -> bool {
+    var stands = false;
+    if ACROSS_WATER {
+        let edge = across_water_edge(origin_ws, direction_ws, water);
+        stands = water == ACROSS_AIR && edge.t < way_m;
+    }
+    if ACROSS_GLASS {
+        // The node over all triangles, where there is one, comes just before the first one over glass.
+        let all = bvh_nodes[frame.joint_root].link == 0u && bvh_nodes[frame.joint_root].count == 0u;
+        let glass = frame.joint_root + select(0u, 1u, all);
+        stands = stands || nearest_below(glass, origin_ws, direction_ws, way_m, false).valid;
+    }
+    return stands;
+}
+
 // (1 - F) through, F back [born1999, 1.5.2]: the heavier goes on as the ray, the other is returned
 fn across_split(ray: ptr<function, AcrossRay>, event: AcrossEvent) -> AcrossRay {
     let begun = *ray;

@@ -66,7 +66,9 @@ class Body:
             "SHEET_LIT": float(item.lit),
             "SHEET_MEETS_BELOW": float(meshes and item.meshes and item.per == "fragment"),
             "SHEET_MEETS_OUTSIDE": float(meshes and item.reflection == "rays"),
+            "SHEET_MEETS_ACROSS": float(item.reflection == "rays"),
             **surroundings.shading_constants,
+            **surroundings.across_constants,
         }
 
 

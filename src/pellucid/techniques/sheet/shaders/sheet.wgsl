@@ -1,5 +1,5 @@
 // What a sheet shows: the picture below it, what it mirrors, or how far an approximation errs.
-//!import surroundings/shaders/shade
+//!import surroundings/shaders/across
 //!import techniques/sheet/shaders/false_colour
 //!import techniques/sheet/shaders/picture
 //!import techniques/sheet/shaders/vertex
@@ -8,6 +8,7 @@ override SHEET_SHOW: u32 = 0u;           // index into scene.refractive_sheet.SH
 override SHEET_SPHERE_MAP: bool = false; // the surroundings are a sphere map
 override SHEET_MEETS_BELOW: bool = false;   // rays to the picture may meet meshes
 override SHEET_MEETS_OUTSIDE: bool = false; // and rays to the surroundings
+override SHEET_MEETS_ACROSS: bool = false;  // these may meet what stands for water and glass
 
 @fragment
 fn fs_main(in: SheetVarying, @builtin(front_facing) front: bool) -> @location(0) vec4f {
@@ -75,11 +76,17 @@ fn sheet_along(p_ws: vec3f, look: SheetLook, uv: vec2f, lod: f32, sphere_uv: vec
     let direction_ws = sheet_to_world(select(look.inward, look.outward, outside));
     var radiance = vec3f(0.0);
     var met = false;
+    if SHEET_MEETS_ACROSS && (ACROSS_WATER || ACROSS_GLASS) {
+        if outside {
+            radiance = across_viewed(p_ws, direction_ws).radiance;
+            met = true;
+        }
+    }
     if SHEET_MEETS_BELOW || SHEET_MEETS_OUTSIDE {
-        let meets = select(SHEET_MEETS_BELOW, SHEET_MEETS_OUTSIDE, outside);
+        let meets = select(SHEET_MEETS_BELOW, SHEET_MEETS_OUTSIDE, outside) && !met;
         let hit = trace_opaque(p_ws, direction_ws, select(0.0, select(sheet.scale * look.hit.path, 1e30, outside), meets));
-        met = hit.valid;
-        if met {
+        met = met || hit.valid;
+        if hit.valid {
             radiance = shade_hit(hit, direction_ws);
             way_m = hit.t;
         }

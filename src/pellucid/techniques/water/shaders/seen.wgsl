@@ -18,11 +18,18 @@ fn seen_along(p_ws: vec3f, direction_ws: vec3f, below: bool, from_side: bool) ->
         return seen_rays(p_ws, direction_ws, below);
     }
     let place = seen_place(p_ws, direction_ws, below);
-    let sends_rays = select(WATER_REFLECTION, WATER_REFRACTION, below) == SEEN_BY_RAYS
+    let across_others = ACROSS_WATER || ACROSS_GLASS;
+    var stands = false;
+    if across_others {
+        let shown_m = select(WATER_FAR, place.t, place.found == PICTURE_SOMETHING);
+        stands = across_stands(p_ws, direction_ws, shown_m, select(ACROSS_AIR, i32(water.region), below));
+    }
+    let sends_rays = stands || select(WATER_REFLECTION, WATER_REFRACTION, below) == SEEN_BY_RAYS
         || (WATER_FALLBACK == 0u && (place.found == PICTURE_UNKNOWN || place.found == PICTURE_HIDDEN))
         || (WATER_SIDES_BY_RAYS && from_side);
     var seen = Seen(vec3f(0.0), 0.0, false);
-    if WATER_FALLBACK == 0u || WATER_SIDES_BY_RAYS || WATER_REFRACTION == SEEN_BY_RAYS || WATER_REFLECTION == SEEN_BY_RAYS {
+    let by_rays = WATER_REFRACTION == SEEN_BY_RAYS || WATER_REFLECTION == SEEN_BY_RAYS;
+    if across_others || WATER_FALLBACK == 0u || WATER_SIDES_BY_RAYS || by_rays {
         if sends_rays {
             seen = seen_rays(p_ws, direction_ws, below);
         }
