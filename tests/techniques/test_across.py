@@ -109,7 +109,7 @@ def ink_ball(medium: object, **placement: object) -> pl.RefractiveVolume:
 
 
 def test_from_below_a_ball_over_the_water_is_in_the_window_and_nowhere_else(renderer: pl.Renderer) -> None:
-    """It swallows all that enters. Where the straight way leads to it and the surface mirrors all, the floor is seen."""
+    """It swallows all that enters. Where the straight way leads to it but the level mirrors all, the floor is seen."""
     floor = pl.Mesh.plane(40.0, position=(0, -2.0, 0), base_color=(0, 0, 0), specular=0.0, emission=(1, 1, 1))
     pool = pl.Water(level=0.0, extent_m=40.0, medium=1.333)
     camera, size = pl.Camera(position=(0, -1.0, 0), target=(1.0, 0.0, 0.0), fov_deg=90), (48, 48)
