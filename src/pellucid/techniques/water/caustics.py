@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pellucid.gpu.kernel import ComputeKernel, RenderPass
+from pellucid.gpu import ComputeKernel, Pipelines
 from pellucid.gpu.layout import offset_of
 from pellucid.scene import DirectionalLight
 from pellucid.surroundings.layouts import MAX_WATER_LIGHTS
@@ -76,7 +76,7 @@ class WaterLight:
     def __init__(self, device: Device) -> None:
         self.device = device
         self.photon_runs = self.depth_runs = 0
-        self._kernels: dict[Any, Any] = {}
+        self._pipelines = Pipelines(device)
         self._lamps: dict[tuple[int, int], Lamp] = {}
         self._drawn: Any = None
         self._lit: Any = None
@@ -157,14 +157,11 @@ class WaterLight:
         return Tracer(lamp.parts, body.params, body.waves, below, above, around.light_map.width, iteration)
 
     def _draw_depth(self, encoder: Any, body: Any, lamp: Lamp, surroundings: Surroundings) -> None:
-        key = "caustic_depth"
-        if key not in self._kernels:
-            self._kernels[key] = RenderPass(
-                self.device, SHADERS + key, fragment=None, targets=(), depth=DEPTH_FORMAT, depth_compare="less"
-            )
+        options: dict[str, Any] = {"fragment": None, "targets": (), "depth": DEPTH_FORMAT, "depth_compare": "less"}
+        depth = self._pipelines.draw(SHADERS + "caustic_depth", **options)
         layer = int(lamp.params["layer"])
         for above, texture in enumerate((surroundings.submersion.depth_map, self._above)):
-            self._kernels[key].run(
+            depth.run(
                 encoder,
                 depth=texture.create_view(dimension="2d", base_array_layer=layer, array_layer_count=1),
                 clear_depth=1.0,
@@ -227,11 +224,7 @@ class WaterLight:
         return {"caustic_slices": slices, "caustic_slice_sampler": self.device.sampler("linear", "clamp")}
 
     def _kernel(self, name: str, constants: dict[str, float] | None = None) -> ComputeKernel:
-        key = (name, *(constants or {}).values())
-        if key not in self._kernels:
-            self._kernels[key] = ComputeKernel(self.device, SHADERS + name, constants=constants)
-        kernel: ComputeKernel = self._kernels[key]
-        return kernel
+        return self._pipelines.kernel(SHADERS + name, constants)
 
     def _lamp(self, key: tuple[int, int], params: np.ndarray, parts: list[np.ndarray]) -> Lamp:
         if key not in self._lamps:

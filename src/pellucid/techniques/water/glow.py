@@ -5,17 +5,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pellucid.gpu.kernel import RenderPass
+from pellucid.gpu import Pipelines
 from pellucid.gpu.targets import COLOR_FORMAT, Targets
 
 if TYPE_CHECKING:
     from pellucid.gpu import Device
 
 FORMAT = "rgba16float"
+SHADERS = "techniques/water/shaders"
 SCALE = 4  # pixels of the picture to one of the highlight
 
 
@@ -29,10 +31,9 @@ class WaterGlow:
 
     def __init__(self, device: Device) -> None:
         self.device = device
-        shaders = "techniques/water/shaders"
-        self._highlight = RenderPass(device, f"{shaders}/glow_highlight", targets=(FORMAT,), nearest=("water_hits",))
-        self._spread = RenderPass(device, f"{shaders}/glow_spread", targets=(FORMAT,))
-        self._add = RenderPass(device, f"{shaders}/glow_add", targets=(COLOR_FORMAT,), nearest=("before",))
+        self._pipelines = Pipelines(device, ("water_hits", "before"))
+        self._spread = self._pipelines.draw(f"{SHADERS}/glow_spread", targets=(FORMAT,))
+        self._add = self._pipelines.draw(f"{SHADERS}/glow_add", targets=(COLOR_FORMAT,))
         self._strength = device.buffer(16, "uniform", "glow strength")
         self._size = (0, 0)
         self._small: list[Any] = []
@@ -44,13 +45,20 @@ class WaterGlow:
         return 16 + self._size[0] * self._size[1] * 16 + sum(8 * t.width * t.height for t in self._small)
 
     def draw(
-        self, encoder: Any, targets: Targets, bindings: dict[str, Any], strength: float, timer: Any = None
+        self,
+        encoder: Any,
+        targets: Targets,
+        bindings: dict[str, Any],
+        constants: Mapping[str, float],
+        strength: float,
+        timer: Any = None,
     ) -> None:
         """Add the glow to the colour of a picture.
 
         Parameters
         ----------
         bindings : of the body of water and of the surroundings, with `water_hits` as the search left it.
+        constants : of the surroundings' shading; they tell which kinds of lamps there are.
         strength : of the highlight before it is spread; 1 for as bright as white paper that faces the lamp.
         """
         self._use_size(targets.size)
@@ -58,8 +66,9 @@ class WaterGlow:
         size = (*targets.size, 1)
         encoder.copy_texture_to_texture({"texture": targets.color}, {"texture": self._before}, size)
         sharp, wide = self._small
+        highlight = self._pipelines.draw(f"{SHADERS}/glow_highlight", constants, targets=(FORMAT,))
         steps = (
-            (self._highlight, sharp.create_view(), bindings),
+            (highlight, sharp.create_view(), bindings),
             (self._spread, wide.create_view(), {"highlight": sharp}),
             (
                 self._add,

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pellucid.gpu import Device, RenderPass
+from pellucid.gpu import Device, Pipelines, RenderPass
 from pellucid.gpu.layout import offset_of
-from pellucid.gpu.modules import declared
 from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT, Targets
 from pellucid.scene.water_quality import (
     COLORS,
@@ -106,7 +105,7 @@ class WaterTechnique:
         self.device = device
         self.bodies: list[Body] = []
         self.ripples_on_device = not device.is_software
-        self._passes: dict[Any, RenderPass] = {}
+        self.pipelines = Pipelines(device, NEAREST)
         self._targets: dict[str, Any] = {}
         self._nothing = _absent(device)
         self._light = WaterLight(device)
@@ -240,7 +239,8 @@ class WaterTechnique:
             )
         if body.quality.glow > 0.0:
             self._glow = self._glow or WaterGlow(self.device)
-            self._glow.draw(encoder, targets, bound, body.quality.glow, timer)
+            constants = surroundings.shading_constants
+            self._glow.draw(encoder, targets, bound, constants, body.quality.glow, timer)
 
     def _across(self, surroundings: Surroundings) -> dict[str, float]:
         """Rays meet what stands for other things only where there are any."""
@@ -308,17 +308,12 @@ class WaterTechnique:
         self.device.write(body.bindings["water"], body.params.reshape(1))
 
     def _pass(self, name: str, constants: dict[str, float]) -> RenderPass:
-        module = f"techniques/water/shaders/{name}"
-        used = declared(module, constants)
-        key = (name, *used.items())
-        if key not in self._passes:
-            options: dict[str, Any] = {"targets": (COLOR_FORMAT,)}
-            if name in ("find", "find_sparse"):
-                options["targets"] = (HIT_FORMAT,)
-            if name in ("find", "widen"):
-                options |= {"depth": DEPTH_FORMAT, "depth_compare": "greater-equal"}
-            self._passes[key] = RenderPass(self.device, module, constants=used, nearest=NEAREST, **options)
-        return self._passes[key]
+        options: dict[str, Any] = {"targets": (COLOR_FORMAT,)}
+        if name in ("find", "find_sparse"):
+            options["targets"] = (HIT_FORMAT,)
+        if name in ("find", "widen"):
+            options |= {"depth": DEPTH_FORMAT, "depth_compare": "greater-equal"}
+        return self.pipelines.draw(f"techniques/water/shaders/{name}", constants, **options)
 
     def _target(self, name: str, format: str, size: tuple[int, int]) -> Any:
         kept = self._targets.get(name)

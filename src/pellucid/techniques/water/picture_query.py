@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pellucid.gpu.kernel import ComputeKernel
+from pellucid.gpu import Pipelines
 from pellucid.surroundings.layouts import QueryHit, QueryRay
 from pellucid.techniques.water.layouts import WaterParams
 
@@ -67,17 +67,11 @@ class PictureQuery:
         self.device.write(self._params, record)
         rays = np.zeros(len(directions), QueryRay)
         rays["origin"], rays["direction"], rays["t_max"] = origins, directions, t_max
-        key = ("picture query", entry)
-        if key not in self.device.cache:
-            module = "techniques/water/shaders/picture_query"
-            self.device.cache[key] = ComputeKernel(
-                self.device, module, entry=entry, nearest=("picture_depths", "picture_sampler")
-            )
+        pipelines = Pipelines(self.device, ("picture_depths", "picture_sampler"), shared=True)
+        kernel = pipelines.kernel("techniques/water/shaders/picture_query", entry=entry)
         found = self.device.buffer(QueryHit.itemsize * len(rays), label="picture hits")
         own = {"picture_rays": self.device.buffer(rays, label="picture rays"), "picture_hits": found}
-        self.device.cache[key].run(
-            (-(-len(rays) // 64), 1, 1), {**own, **self.pictures.bindings, "water": self._params}
-        )
+        kernel.run((-(-len(rays) // 64), 1, 1), {**own, **self.pictures.bindings, "water": self._params})
         hits = self.device.read(found, QueryHit, len(rays))
         uv, depth = hits["value"][:, :2].astype(np.float64), hits["value"][:, 2].astype(np.float64)
         down = rays["direction"][:, 1] <= 0.0
