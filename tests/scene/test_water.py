@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -29,6 +30,76 @@ def test_water_is_read_as_it_was_written(suffix: str, tmp_path: Path) -> None:
     same = [f.name for f in dataclasses.fields(pl.Water) if f.name != "waves"]
     assert [getattr(read, name) for name in same] == [getattr(water, name) for name in same]
     assert np.array_equal(read.waves.advance(0.8), ripples.advance(0.8)) and read.waves.advance(0.8).any()
+
+
+def test_outlines_are_read_as_they_were_written(tmp_path: Path) -> None:
+    waters = [
+        pl.Water(outline="ellipse", extent_m=(2, 1), depth_m=0.5, floor="round"),
+        pl.Water(outline=np.array([(0, 0), (1, 3), (3, 0)]), center=(1, 2), depth_m=0.5, floor_scale=0.5),
+        pl.Water(extent_m=3.0, depth_m=1.0),
+    ]
+    pl.save_scene(scene(*waters), tmp_path / "basins.toml")
+    for water, read in zip(waters, pl.load_scene(tmp_path / "basins.toml").objects, strict=True):
+        assert isinstance(read, pl.Water)
+        same = [f.name for f in dataclasses.fields(pl.Water)]
+        assert [getattr(read, name) for name in same] == [getattr(water, name) for name in same]
+
+
+def test_a_polygon_goes_round_one_way_and_spans_what_its_corners_do() -> None:
+    corners = [(0.0, 0.0), (1.0, 3.0), (3.0, 0.0)]
+    one, other = (pl.Water(outline=c, center=(1, 2), depth_m=2.0) for c in (corners, corners[::-1]))
+    assert sorted(one.outline) == sorted(other.outline) == corners
+    for water in (one, other):
+        assert water.bounds_m == ((1.0, 2.0), (4.0, 5.0)) and water.size_m == water.extent_m == (3.0, 3.0)
+        points = [(1.3, -1.0, 1.0), (0.1, -1.0, 0.2), (0.1, -1.0, 2.0), (2.4, -1.0, 1.1), (1.3, -2.1, 1.0)]
+        middle = np.array([water.shape.middle[0] - 1.0, 0.0, water.shape.middle[1] - 2.0])
+        assert water.shape.holds(np.array(points) - middle).tolist() == [True, True, False, False, False]
+
+
+def test_round_floors_are_those_of_balls_and_buckets_those_of_cones() -> None:
+    ball = pl.Water(outline="ellipse", extent_m=1.2, depth_m=1.0 + 0.8, floor="round").shape  # of 1 m, 0.8 m under
+    depth = np.linspace(0.0, 1.8, 50)
+    radius = np.sqrt(1.0 - (depth - 0.8) ** 2)
+    assert ball.widest == pytest.approx(1.0 / 0.6)
+    bucket = pl.Water(outline="ellipse", extent_m=2.0, depth_m=0.5, floor_scale=0.6).shape
+    inner = np.stack([0.999 * radius, -depth, 0.0 * depth], -1)
+    assert ball.holds(inner[1:-1]).all() and not ball.holds(inner / (0.999, 1, 1) * (1.001, 1, 1))[1:-1].any()
+    assert bucket.holds([(0.0, -0.499, 0.599), (0.79, -0.25, 0.0)]).all()
+    assert not bucket.holds([(0.0, -0.499, 0.61), (0.81, -0.25, 0.0), (0.0, -0.51, 0.0)]).any()
+
+
+@pytest.mark.parametrize(
+    ("fields", "where", "reason"),
+    [
+        ({"outline": "circle"}, "water.outline", "ellipse"),
+        ({"outline": None}, "water.outline", "shape"),
+        ({"outline": [(0, 0), "x", (1, 1)]}, "water.outline", "corners"),
+        ({"outline": [(0, 0), (1, 0)]}, "water.outline", "2 corners"),
+        ({"outline": [(np.cos(a), np.sin(a)) for a in np.arange(17) * 2 * np.pi / 17]}, "water.outline", "17 corners"),
+        ({"outline": [(0, 0), (1, 0), (1, np.nan)]}, "water.outline[2]", "finite"),
+        ({"outline": [(0, 0), (1, 0), (1, 0), (0, 1)]}, "water.outline[1]", "next corner"),
+        ({"outline": [(0, 0), (2, 0), (0.5, 0.5), (0, 2)]}, "water.outline[2]", "convex"),
+        ({"outline": [(0, 0), (1, 0), (2, 0), (0, 2)]}, "water.outline[1]", "convex"),
+        ({"outline": [(0, 0), (1, 1), (2, 2)]}, "water.outline", "convex"),
+        (
+            {"outline": [(np.cos(a), np.sin(a)) for a in np.arange(5) * 4 * np.pi / 5]},
+            "water.outline",
+            "more than once",
+        ),
+        ({"depth_m": 0.0}, "water.depth_m", "0"),
+        ({"depth_m": "deep"}, "water.depth_m", "number"),
+        ({"floor": "soft", "depth_m": 1.0}, "water.floor", "soft"),
+        ({"floor": "round", "depth_m": 1.0}, "water.floor", "ellipse"),
+        ({"floor": "round", "outline": "ellipse"}, "water.floor", "deep"),
+        ({"floor_scale": 0.5}, "water.floor_scale", "deep"),
+        ({"floor_scale": 1.5, "depth_m": 1.0}, "water.floor_scale", "1"),
+        ({"floor_scale": 0.5, "depth_m": 1.0, "outline": "ellipse", "floor": "round"}, "water.floor_scale", "flat"),
+    ],
+)
+def test_shapes_that_cannot_be_are_named(fields: dict[str, Any], where: str, reason: str) -> None:
+    with pytest.raises(pl.SceneError) as error:
+        pl.Water(**fields)
+    assert error.value.field.startswith(where) and reason in str(error.value)
 
 
 def test_waves_of_every_kind_are_read_as_they_were_written(tmp_path: Path) -> None:

@@ -40,6 +40,17 @@ def test_all_that_is_below_the_rectangle_is_covered(orthographic: bool) -> None:
     assert shown > 1000 and smaller > 10
 
 
+def test_what_has_a_floor_covers_no_more_than_the_box_above_it() -> None:
+    rng = np.random.default_rng(5)
+    points = rng.uniform((LOW[0], TOP - 1.5, LOW[1]), (HIGH[0], TOP, HIGH[1]), (4000, 3))
+    camera = pl.Camera(position=(0, 0.5, 20), target=(0, 0, 0), near_m=0.01)
+    clip = np.asarray(camera.projection_matrix(SIZE) @ camera.view_matrix(), np.float64)
+    left, top, width, height = covered(LOW, HIGH, TOP, clip, SIZE, TOP - 1.5)
+    seen = pixels(camera, points)
+    assert ((seen >= (left, top)) & (seen <= (left + width, top + height))).all()
+    assert height <= np.ptp(seen[:, 1]) + 5 and covered(LOW, HIGH, TOP, clip, SIZE)[3] > height + 10
+
+
 def test_what_is_behind_the_camera_covers_nothing_and_a_sea_ends_at_the_horizon() -> None:
     camera = pl.Camera(position=(0, 9, 20), target=(0, 9, 40), near_m=0.01)
     clip = np.asarray(camera.projection_matrix(SIZE) @ camera.view_matrix(), np.float64)

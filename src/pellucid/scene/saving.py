@@ -42,7 +42,7 @@ LOOKS: dict[type, tuple[str, ...]] = {
     ),
     Water: (
         *("level", "extent_m", "center", "ambient_n", "technique", "quality", "foam", "color", "clarity_per_m"),
-        "dispersion",
+        *("dispersion", "outline", "depth_m", "floor", "floor_scale"),
     ),
     RefractiveSheet: (
         *("position", "rotation", "scale", "depth_m", "size_m", "segments", "motion_fps", "ambient_n", "refraction"),

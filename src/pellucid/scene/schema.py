@@ -381,6 +381,10 @@ class WaterFile(Model):
     color: Triple = UNSET
     clarity_per_m: Number = UNSET
     dispersion: StrictBool = UNSET
+    outline: StrictStr | list[tuple[Number, Number]] = UNSET
+    depth_m: Number = UNSET
+    floor: StrictStr = UNSET
+    floor_scale: Number = UNSET
 
 
 class SheetFile(Placed):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pellucid.gpu.layout import struct
+from pellucid.scene.water_outline import MOST_CORNERS
 
 FLAG_ORTHOGRAPHIC = 1
 
@@ -163,6 +164,12 @@ SubmersionParams = struct(
             "level",
             ("vec4f", MAX_WATERS),
         ),  # level; highest wave over it; first layer of maps; reach of their depth, m
+        (
+            "shape",
+            ("vec4f", MAX_WATERS),
+        ),  # of scene.water_outline: kind; bend b 1/m, c 1/m^2; depth of the floor, metres
+        ("middle", ("vec4f", MAX_WATERS)),  # x and z that it narrows towards; halves of its size along them
+        ("edges", ("vec4f", MAX_WATERS * MOST_CORNERS)),  # x n_x + z n_z + s h <= d
         ("index", ("vec4f", MAX_WATERS)),  # over that above, for red, green, blue
         ("absorption", ("vec4f", MAX_WATERS)),  # 1/m; how deep meshes hide the sky, m
         ("scattering", ("vec4f", MAX_WATERS)),  # 1/m; mean cosine

@@ -106,6 +106,7 @@ class Surroundings:
             "CAUSTICS": float(self.caustics.active),
             "SUBMERGED": float(self.submersion.active),
             "LAMPS": float(self.light_count),
+            "SUBMERGED_OUTLINES": float(self.submersion.outlined),
             "MAPS_ALONG": float(all(region.along for region in regions)),
             "ASTRAY": float(any(any(region.scattering_per_m) for region in regions)),
         }

@@ -27,6 +27,7 @@ import numpy as np
 
 from pellucid.errors import SceneError
 from pellucid.optics import fresnel_dielectric
+from pellucid.scene.water_outline import MOST_CORNERS, WaterShape
 from pellucid.surroundings.diffuse import diffuse_tables
 from pellucid.surroundings.environment import irradiance_basis, row_solid_angles
 from pellucid.surroundings.layouts import (
@@ -63,6 +64,7 @@ class WaterRegion:
     limits_m : lowest and highest wave over the level.
     n : index by channel, over that of what is above.
     absorption_per_m, scattering_per_m : by channel. asymmetry : mean cosine of the scattering angle.
+    shape : what bounds it besides its surface; None for all that is below the rectangle.
     reach_m : how far below the highest wave meshes are told apart by the maps.
     slopes : (x, z) of the camera of each map, horizontal way over depth, towards the light.
     shadows : by map, whether meshes throw any.
@@ -85,6 +87,7 @@ class WaterRegion:
     along: bool = False
     near: tuple[bool, ...] = ()
     shade_depth_m: float = 0.0
+    shape: WaterShape | None = None
 
 
 @dataclass
@@ -151,6 +154,11 @@ class Submersion:
         side, depth_side, layers = self._size
         return self.open_sky.nbytes + SubmersionParams.itemsize + layers * (8 * side**2 + 4 * depth_side**2)
 
+    @property
+    def outlined(self) -> bool:
+        """Whether a water has borders of its own; then shaders are run with ``SUBMERGED_OUTLINES`` = 1."""
+        return any(region.shape is not None for region in self.regions)
+
     def is_above(self, p_ws: np.ndarray) -> bool:
         """Whether a point (3,) is above the highest wave of all waters, and sees what is in them through a surface."""
         return all(p_ws[1] > region.level_m + region.limits_m[1] for region in self.regions)
@@ -199,6 +207,11 @@ class Submersion:
     def _write(self, p: np.ndarray, k: int, region: WaterRegion, sky: SkyThroughSurface) -> None:
         p["bounds"][k] = *region.low_m, *region.high_m
         p["level"][k] = region.level_m, region.limits_m[1], self.layer(k, 0), region.reach_m
+        if region.shape is not None:
+            shape = region.shape
+            p["shape"][k] = shape.kind, *shape.bend, shape.depth_m
+            p["middle"][k] = *shape.middle, *shape.half
+            p["edges"][k * MOST_CORNERS : (k + 1) * MOST_CORNERS] = every_edge(shape.edges)
         p["index"][k, :3] = region.n
         p["absorption"][k] = *region.absorption_per_m, region.shade_depth_m
         p["scattering"][k] = *region.scattering_per_m, region.asymmetry
@@ -232,6 +245,11 @@ class Submersion:
         self._resources["submerged_depth"] = self.depth_map.create_view(dimension="2d-array")
         self._size = side, depth_side, layers
         return True
+
+
+def every_edge(edges: np.ndarray) -> np.ndarray:
+    """Edges (N, 4) of a polygon, and others that hold every point, up to as many as there may be."""
+    return np.concatenate([edges, np.tile((0.0, 0.0, 0.0, 1.0), (MOST_CORNERS - len(edges), 1))])
 
 
 def refracted_slope(towards: np.ndarray, n: float) -> tuple[float, float]:

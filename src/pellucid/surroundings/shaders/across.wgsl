@@ -29,8 +29,7 @@ struct Across {
 // camera's water is seen as from the air there; the water does the rest.
 fn across_viewed(origin_ws: vec3f, direction_ws: vec3f) -> Across {
     let viewer = submerged_at(frame.camera_position);
-    let bounds = submersion.bounds[viewer.water];
-    let beside = any(origin_ws.xz < bounds.xy) || any(origin_ws.xz > bounds.zw);
+    let beside = !submerged_within(viewer.water, origin_ws);
     let n = select(vec3f(1.0), submersion.index[viewer.water].rgb, viewer.inside && !beside);
     let medium = across_medium(across_water_at(origin_ws, ACROSS_AIR));
     let seen = across(AcrossRay(origin_ws, direction_ws, vec3f(1.0), medium), true);

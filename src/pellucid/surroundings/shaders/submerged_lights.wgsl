@@ -27,7 +27,7 @@ fn lamp_seen(light: u32, p_ws: vec3f, n_ws: vec3f, at: Submerged) -> f32 {
     let in_air = shadow_visibility(light, p_ws, n_ws);
     let layer = u32(max(lights[light].water_layer, 0));
     let camera = submersion.slope[at.water * MAX_WATER_LIGHTS + layer];
-    let mapped = submerged_mapped(submerged_uv(at.water, submerged_entry(p_ws, submersion.level[at.water].x, camera.xy)));
+    let mapped = submerged_mapped(at.water, submerged_entry(p_ws, submersion.level[at.water].x, camera.xy));
     let map = u32(submersion.level[at.water].z) + layer;
     let below = mix(1.0, submerged_visibility(at.water, map, p_ws, n_ws, camera.xy), camera.z);
     return select(in_air, below, at.inside && mapped);
@@ -49,13 +49,14 @@ fn sample_near_light_anywhere(light: u32, index: u32, p_ws: vec3f, n_ws: vec3f, 
     let n = submersion.index[at.water].rgb;
     // Of the lamp's middle first, which tells the place on its map
     var way = WetWay(p_ws, n_ws, n_ws, 1.0, 1.0, 1.0);
-    var uv = vec2f(-1.0);
+    var came = p_ws.xz;
     for (var part = 0u; part < select(1u, 2u, is_area && has_map); part++) {
         let from_ws = select(lamp_ws, lights[light].position, part == 0u);
         way = submerged_way(p_ws, from_ws, select(p_ws.y - 1.0, level_m, bent), n.g);
-        uv = select(uv, submerged_uv(at.water, way.crossing.xz), part == 0u);
+        came = select(came, way.crossing.xz, part == 0u);
     }
-    let mapped = bent && has_map && submerged_mapped(uv);
+    let uv = submerged_uv(at.water, came);
+    let mapped = bent && has_map && submerged_mapped(at.water, came);
     let straight = lamp_ws - p_ws;
     let d2 = max(dot(straight, straight), 1e-12);
     let direction = select(straight * inverseSqrt(d2), way.below, bent);

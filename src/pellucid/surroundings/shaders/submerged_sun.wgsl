@@ -40,8 +40,14 @@ fn submerged_sun() -> u32 {
     return found;
 }
 
-fn submerged_mapped(uv: vec2f) -> bool {
-    return all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0));
+// Whether light has come in through the surface at a place of the level; through a border it has not
+fn submerged_mapped(water: u32, entry: vec2f) -> bool {
+    let uv = submerged_uv(water, entry);
+    var mapped = all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0));
+    if SUBMERGED_OUTLINES {
+        mapped = mapped && submerged_within(water, vec3f(entry.x, submersion.level[water].x, entry.y));
+    }
+    return mapped;
 }
 
 // What light of a lamp far away is in one water, wherever it goes
@@ -71,14 +77,15 @@ fn submerged_share(beam: SubmergedBeam, layer: i32, p_ws: vec3f, water: u32, see
     let level = submersion.level[water];
     let map = u32(level.z) + u32(max(layer, 0));
     let slope = submersion.slope[water * MAX_WATER_LIGHTS + u32(max(layer, 0))].xy;
-    let uv = submerged_uv(water, submerged_entry(p_ws, level.x, select(slope, beam.aside, layer < 0)));
+    let entry = submerged_entry(p_ws, level.x, select(slope, beam.aside, layer < 0));
+    let uv = submerged_uv(water, entry);
     let found = textureSampleLevel(submerged_light, caustic_sampler, uv, map, 0.0);
     var wave_m = found.a;
     if !MAPS_ALONG {
         wave_m = submerged_wave(water, submerged_entry(p_ws, level.x, beam.aside));
     }
     let path_m = max(level.x + wave_m - p_ws.y, 0.0) * beam.longer;
-    let mapped = layer >= 0 && submerged_mapped(uv);
+    let mapped = layer >= 0 && submerged_mapped(water, entry);
     let share = select(beam.passed, found.rgb, mapped) * select(seen, 1.0, layer < 0);
     let direct = exp(-(submersion.absorption[water].rgb + submersion.scattering[water].rgb) * path_m);
     if !ASTRAY {

@@ -37,8 +37,7 @@ fn fs_main(in: SunlitVarying) -> @location(0) vec4f {
 // What waves take from the light of the sky, which was worked out for level water; 1 where there is none
 fn sunlit_depth(p_ws: vec3f) -> vec3f {
     let level = submersion.level[0];
-    let bounds = submersion.bounds[0];
-    let inside = all(p_ws.xz >= bounds.xy) && all(p_ws.xz <= bounds.zw) && p_ws.y < level.x + level.y;
+    let inside = submerged_within(0u, p_ws) && p_ws.y < level.x + level.y;
     let at_rest_m = level.x - p_ws.y;
     let more_m = max(at_rest_m + submerged_wave(0u, p_ws.xz), 0.0) - max(at_rest_m, 0.0);
     return select(vec3f(1.0), exp(-submerged_attenuation(0u) * more_m), inside);

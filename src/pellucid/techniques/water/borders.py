@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pellucid.scene.water_outline import PART
 from pellucid.techniques.water.reference_pictures import first_triangle
 
 if TYPE_CHECKING:
@@ -29,6 +30,8 @@ class OpenBorder:
 
     def shows(self, item: Water, lowest_m: float, surroundings: Surroundings) -> bool:
         """Whether the camera of the surroundings may see a border; `lowest_m` is the lowest wave over the level."""
+        if item.shape.kind != PART:
+            return True  # from within too
         if not is_aside(item, surroundings.view):
             return False
         geometry = surroundings.geometry

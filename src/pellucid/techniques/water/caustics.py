@@ -18,6 +18,7 @@ import numpy as np
 from pellucid.gpu import ComputeKernel, Pipelines
 from pellucid.gpu.layout import offset_of
 from pellucid.scene import DirectionalLight
+from pellucid.scene.water_outline import PART
 from pellucid.surroundings.layouts import MAX_WATER_LIGHTS
 from pellucid.surroundings.submersion import DEPTH_FORMAT, WaterRegion, refracted_slope
 from pellucid.techniques.water.lamp_parts import lamp_in_parts, lifted, towards
@@ -311,6 +312,7 @@ def region_of(body: Any, lamps: Sequence[Any], mesh_bounds: Sequence[tuple[np.nd
         absorption_per_m=_three(absorption),
         scattering_per_m=_three(scattering),
         asymmetry=float(p["asymmetry"]),
+        shape=body.item.shape if body.item.shape.kind != PART else None,
         reach_m=max(reach, 1e-3),
         slopes=tuple(camera_slope(lamp, n[1], quality) for lamp in lamps),
         shadows=tuple(quality.shadows and lamp.cast_shadow for lamp in lamps),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pellucid.gpu.layout import struct
+from pellucid.scene.water_outline import MOST_CORNERS
 
 WAVE_LAYERS = 8  # most that one body of water adds up
 
@@ -36,6 +37,10 @@ WaterParams = struct(
         ("wave_layers", "u32"),
         ("time_s", "f32"),
         ("block", "vec2u"),  # pixels that share a ray, from left to right and from top to bottom
+        ("shape", "vec4f"),  # of scene.water_outline: bend b 1/m, c 1/m^2; depth of the floor, metres
+        ("middle", "vec2f"),  # x and z that it narrows towards
+        ("half", "vec2f"),  # halves of its size along x and z, metres
+        ("edges", ("vec4f", MOST_CORNERS)),  # of a polygon: x n_x + z n_z + s h <= d; those that are missing hold all
         ("wave_tiles", ("vec4f", WAVE_LAYERS)),  # by layer: width and depth in metres, 1 where it repeats, 0
     ]
 )

@@ -81,6 +81,7 @@ class Body:
             "WATER_REFRACTION": float(REFRACTIONS.index(quality.refraction)),
             "WATER_REFLECTION": float(REFLECTIONS.index(quality.reflection)),
             "WATER_SIDES_BY_RAYS": float(sides_by_rays),
+            "WATER_OUTLINE": float(self.item.shape.kind),
             "WATER_UNDERSIDE": float(UNDERSIDES.index(quality.underside)),
             "WATER_FALLBACK": float(FALLBACKS.index(quality.fallback)),
             "WATER_FRESNEL": float(FRESNELS.index(quality.fresnel)),
@@ -173,7 +174,8 @@ class WaterTechnique:
     def _draw(self, encoder: Any, body: Body, targets: Targets, surroundings: Surroundings, timer: Any) -> None:
         top_m = body.item.level + body.waves.range_m[1]
         clip = surroundings.frame["clip_from_world"].T.astype(np.float64)
-        region = covered(*body.item.bounds_m, top_m, clip, targets.size)
+        low, high = body.item.box_m
+        region = covered(low[::2], high[::2], top_m, clip, targets.size, low[1])
         if 0 in region[2:]:
             return
         copies = {

@@ -11,6 +11,7 @@ import numpy as np
 
 from pellucid.errors import SceneError
 from pellucid.fields.heightfield import slopes_of
+from pellucid.surroundings.submersion import every_edge
 from pellucid.techniques.water.layouts import WAVE_LAYERS, WaterParams
 from pellucid.techniques.water.wave_moments import short_slopes
 
@@ -164,6 +165,10 @@ def parameters(item: Water, quality: WaterQuality, waves: WaveMaps, time_s: floa
     p["steps"], p["march_steps"] = quality.steps, quality.march_steps
     p["point_distance_m"], p["underside_distance_m"] = quality.point_distance_m, quality.underside_distance_m
     p["short_slopes"] = short_slopes(sources_of(item.waves))
+    shape = item.shape
+    p["shape"] = *shape.bend, shape.depth_m, 0.0
+    p["middle"], p["half"] = shape.middle, shape.half
+    p["edges"] = every_edge(shape.edges)
     p["wave_layers"], p["time_s"] = len(waves.tiles), time_s
     p["wave_tiles"][: len(waves.tiles)] = waves.tiles
     return p

@@ -9,20 +9,30 @@ Rectangle = tuple[int, int, int, int]
 
 
 def covered(
-    low: tuple[float, float], high: tuple[float, float], top_m: float, clip: np.ndarray, size: tuple[int, int]
+    low: tuple[float, float],
+    high: tuple[float, float],
+    top_m: float,
+    clip: np.ndarray,
+    size: tuple[int, int],
+    floor_m: float = -np.inf,
 ) -> Rectangle:
     """Pixels (left, top, width, height) that see a rectangle, or what is right below it; width or height 0 for none.
 
     Parameters
     ----------
     low, high : corners (x, z) of the rectangle, metres. top_m : its height.
-    clip : (4, 4) clip from world. size : of the picture, pixels.
+    clip : (4, 4) clip from world. size : of the picture, pixels. floor_m : height that nothing of it is below.
     """
     plan = [(low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])]
     corners = np.array([(x, top_m, z, 1.0) for x, z in plan]) @ clip.T
     down = np.array([0.0, -1.0, 0.0, 0.0]) @ clip.T
     edges = [(a, b - a, 1.0) for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True)]
-    edges += [(corner, down, np.inf) for corner in corners]
+    if np.isfinite(floor_m):
+        floor = np.array([(x, floor_m, z, 1.0) for x, z in plan]) @ clip.T
+        edges += [(a, b - a, 1.0) for a, b in zip(floor, np.roll(floor, -1, axis=0), strict=True)]
+        edges += [(a, b - a, 1.0) for a, b in zip(corners, floor, strict=True)]
+    else:
+        edges += [(corner, down, np.inf) for corner in corners]
     points = np.array([point for edge in edges for point in _seen(*edge)])
     if not len(points):
         return 0, 0, 0, 0

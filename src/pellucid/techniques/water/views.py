@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellucid.gpu.targets import COLOR_FORMAT, DEPTH_FORMAT
+from pellucid.scene.water_outline import PART
 from pellucid.surroundings.views import Box, SceneView, Shown, above, below
 from pellucid.techniques.water.cameras import Basin, pictures
 from pellucid.techniques.water.layouts import WaterViews
@@ -167,6 +168,8 @@ def wanted_pictures(quality: WaterQuality, view: View | None, level_m: float) ->
 def hidden_box(item: Water, limits_m: tuple[float, float], view: View) -> Box | None:
     """Box below the lowest wave, which a camera outside of the water sees through the surface or not at all.
 
+    None where the water has borders of its own: it is seen through those too.
+
     Parameters
     ----------
     limits_m : lowest and highest wave over the level. view : the camera.
@@ -177,7 +180,7 @@ def hidden_box(item: Water, limits_m: tuple[float, float], view: View) -> Box | 
     x, y, z = view.position
     over = y > item.level + limits_m[1] + view.near_m
     aside = x < x0 - view.near_m or x > x1 + view.near_m or z < z0 - view.near_m or z > z1 + view.near_m
-    if view.is_orthographic or not (over or aside):
+    if view.is_orthographic or not (over or aside) or item.shape.kind != PART:
         return None
     top = item.level + limits_m[0] - HIDDEN_MARGIN_M
     return (x0 + wall_x, -np.inf, z0 + wall_z), (x1 - wall_x, top, z1 - wall_z)

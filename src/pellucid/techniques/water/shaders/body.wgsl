@@ -1,10 +1,15 @@
-// The rectangle that water fills.
+// The space that water fills.
+//!import techniques/water/shaders/outline
 //!import techniques/water/shaders/waves
 
 const WATER_FAR = 1e30;
 
-// Way along a ray to the sides of the rectangle: in, out; out < in where it passes
+// Way along a ray to the borders: in, out; out < in where it passes
 fn water_sides(origin_ws: vec3f, direction_ws: vec3f) -> vec2f {
+    if WATER_OUTLINE > 0u {
+        let way = outline_way(origin_ws, direction_ws);
+        return vec2f(way.near, way.far);
+    }
     let tiny = vec2f(1e-20);
     let d = select(direction_ws.xz, select(-tiny, tiny, direction_ws.xz >= vec2f(0.0)), abs(direction_ws.xz) < tiny);
     let a = (water.low - origin_ws.xz) / d;

@@ -13,8 +13,8 @@ fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let p_ws = ray.origin + hit.t * ray.direction;
     var radiance = textureLoad(opaque_color, vec2i(position.xy), 0).rgb;  // none where pixels share a ray
     let denser = water_dilution(water.n_water.g, water.n_outside);
-    let within = hit.kind == WATER_BELOW || hit.kind >= WATER_FOG;
-    let meets = hit.kind != WATER_NONE && hit.kind < WATER_FOG;
+    let within = water_is_within(hit.kind);
+    let meets = water_meets(hit.kind);
     radiance = select(radiance, vec3f(0.0), meets);
     radiance *= select(1.0, denser, hit.kind == WATER_OUT);
     let light = interface_light(hit, meets, p_ws, ray.direction);

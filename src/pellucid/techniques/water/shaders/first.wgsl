@@ -7,6 +7,7 @@ const FIND_COVER = 1e-5;  // what covers an open border lies this share of the w
 // What a ray of the camera meets first
 fn water_first(origin_ws: vec3f, direction_ws: vec3f, t_max: f32) -> WaterHit {
     let up = vec3f(0.0, 1.0, 0.0);
+    let own = outline_way(origin_ws, direction_ws);
     let sides = water_sides(origin_ws, direction_ws);
     let start = max(sides.x, 0.0);
     let end = min(sides.y, t_max);
@@ -15,11 +16,15 @@ fn water_first(origin_ws: vec3f, direction_ws: vec3f, t_max: f32) -> WaterHit {
     }
     let under = water_gap(origin_ws, direction_ws, start) < 0.0;
     if under && start > 0.0 {
-        return WaterHit(WATER_SIDE, start, water_side_normal(origin_ws + start * direction_ws));
+        let cut = water_side_normal(origin_ws + start * direction_ws);
+        return WaterHit(WATER_SIDE, start, select(cut, own.near_n, WATER_OUTLINE > 0u));
     }
     let found = water_crossing(origin_ws, direction_ws, start, end, select(1.0, -1.0, under));
     if found >= 0.0 {
         return WaterHit(select(WATER_ABOVE, WATER_BELOW, under), found, up);
+    }
+    if under && WATER_OUTLINE > 0u && sides.y < WATER_FAR {
+        return WaterHit(select(WATER_RIM, WATER_FOG, t_max <= sides.y), end, own.far_n);
     }
     let holds = water_reaches(origin_ws + t_max * direction_ws);
     let within = WaterHit(select(WATER_OUT, WATER_FOG, holds), select(end, t_max, holds), up);

@@ -1,20 +1,17 @@
 // Radiance that the surface of water sends to a viewer on either side of it.
-//!import optics/fresnel
 //!import optics/rough_water
 //!import optics/snell
 //!import techniques/water/shaders/dilution
 //!import techniques/water/shaders/foam
 //!import techniques/water/shaders/glitter
 //!import techniques/water/shaders/hit
+//!import techniques/water/shaders/reflectance
 //!import techniques/water/shaders/seen
 //!import techniques/water/shaders/surface
 //!import techniques/water/shaders/underside
 //!import techniques/water/shaders/volume
 
-override WATER_FRESNEL: u32 = 0u;  // 0 exact, 1 Schlick's curve
 override WATER_DISPERSION: bool = false;
-
-const WATER_GRAZING = 1e-4;  // least cosine between normal and view
 
 // What a surface sends: radiance that goes no way through water, and what one ray in the water sees at its end
 struct InterfaceLight {
@@ -28,14 +25,15 @@ struct InterfaceLight {
 // (1 - F) (n_i / n_t)^2 of what the refracted ray sees, F of what the mirrored one sees [born1999, 4.8.3]. All rays go
 // through one place.
 fn interface_light(hit: WaterHit, meets: bool, p_ws: vec3f, direction_ws: vec3f) -> InterfaceLight {
-    let from_within = hit.kind == WATER_BELOW;
+    let from_within = hit.kind == WATER_BELOW || hit.kind == WATER_RIM;
+    let border = water_is_border(hit.kind);
     // That of a pixel where a block of them shares this too: its mean slope would mirror less than all of theirs.
     let footprint = footprint_m(p_ws) * inverseSqrt(max(abs(direction_ws.y), 1e-3));
     let at = wave_point(p_ws.xz, footprint);
     // Of waves that a pixel hides those are seen that lean towards the viewer.
     let towards = select(-direction_ws, direction_ws, from_within);
     let up = wave_normal(visible_slope(towards, at.slope, at.variance));
-    let outward = select(up, hit.normal, hit.kind == WATER_SIDE);
+    let outward = select(up, hit.normal, border);
     let n_ws = water_towards(select(outward, -outward, from_within), direction_ws);
     let cos_i = -dot(n_ws, direction_ws);
     let refracted_rays = select(1u, 3u, WATER_DISPERSION);
@@ -63,7 +61,7 @@ fn interface_light(hit: WaterHit, meets: bool, p_ws: vec3f, direction_ws: vec3f)
         let below = mirrors == from_within;
         let way = select(passing, water_mirrored(direction_ws, n_ws, hit.kind), mirrors);
         if any(weight > vec3f(0.0)) {
-            let seen = seen_along(p_ws, way, below, hit.kind == WATER_SIDE);
+            let seen = seen_along(p_ws, way, below, border, n);
             if WATER_DISPERSION {
                 radiance += weight * water_look(seen, p_ws, way, below);
             } else if below {
@@ -75,10 +73,10 @@ fn interface_light(hit: WaterHit, meets: bool, p_ws: vec3f, direction_ws: vec3f)
     }
     if meets {
         let glints = water_glitter(p_ws, at, -direction_ws, from_within);
-        radiance += select(glints, vec3f(0.0), hit.kind == WATER_SIDE);
+        radiance += select(glints, vec3f(0.0), border);
         if WATER_FOAM {
             let covered = foam_cover(p_ws.xz, at.fold, footprint_m(p_ws));
-            let cover = select(covered, 0.0, hit.kind == WATER_SIDE);
+            let cover = select(covered, 0.0, border);
             radiance = mix(radiance, foam_radiance(p_ws, wave_normal(at.slope), from_within), cover);
             wet.wet *= 1.0 - cover;
             wet.share *= 1.0 - cover;
@@ -100,21 +98,5 @@ fn water_look(seen: Seen, p_ws: vec3f, direction_ws: vec3f, below: bool) -> vec3
 fn water_mirrored(direction_ws: vec3f, n_ws: vec3f, kind: u32) -> vec3f {
     let way = reflect(direction_ws, n_ws);
     let upright = vec3f(way.x, select(abs(way.y), -abs(way.y), kind == WATER_BELOW), way.z);
-    return select(upright, way, kind == WATER_SIDE);
-}
-
-fn water_reflectance(cos_i: f32, n_i: f32, n_t: f32) -> f32 {
-    if WATER_FRESNEL == 1u {
-        let c = saturate(cos_i);
-        let q_squared = (n_t - n_i) * (n_t + n_i) + n_i * c * (n_i * c);
-        let cosine = select(c, sqrt(max(q_squared, 0.0)) / n_t, n_i > n_t);
-        return schlick(normal_reflectance(n_i, n_t), cosine, water.schlick_power);
-    }
-    return fresnel_dielectric(cos_i, n_i, n_t);
-}
-
-// A normal that leans away from the viewer is turned until it just faces them: slopes are those of a whole pixel
-fn water_towards(n_ws: vec3f, direction_ws: vec3f) -> vec3f {
-    let facing = -dot(n_ws, direction_ws);
-    return select(n_ws, normalize(n_ws - (WATER_GRAZING - facing) * direction_ws), facing < WATER_GRAZING);
+    return select(upright, way, water_is_border(kind));
 }

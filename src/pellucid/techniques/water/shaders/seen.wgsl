@@ -3,6 +3,7 @@
 //!import techniques/water/shaders/seen_march
 //!import techniques/water/shaders/seen_point
 //!import techniques/water/shaders/seen_rays
+//!import techniques/water/shaders/seen_within
 //!import techniques/water/shaders/underside
 
 override WATER_REFRACTION: u32 = 0u;  // water_quality.REFRACTIONS
@@ -12,10 +13,11 @@ override WATER_SIDES_BY_RAYS: bool = false;  // borders are seen that no picture
 
 const SEEN_BY_RAYS = 0u;
 
-// Either side, each way of looking in one place: a software driver executes all of them for all pixels.
-fn seen_along(p_ws: vec3f, direction_ws: vec3f, below: bool, from_side: bool) -> Seen {
+// Either side, each way of looking in one place: a software driver executes all of them for all pixels. `n` is the index
+// of the water for the ray.
+fn seen_along(p_ws: vec3f, direction_ws: vec3f, below: bool, from_side: bool, n: f32) -> Seen {
     if WATER_REFRACTION == 0u && WATER_REFLECTION == 0u {
-        return seen_rays(p_ws, direction_ws, below);
+        return seen_by_rays(p_ws, direction_ws, below, n);
     }
     let place = seen_place(p_ws, direction_ws, below);
     let across_others = ACROSS_WATER || ACROSS_GLASS;
@@ -26,18 +28,34 @@ fn seen_along(p_ws: vec3f, direction_ws: vec3f, below: bool, from_side: bool) ->
     }
     let sends_rays = stands || select(WATER_REFLECTION, WATER_REFRACTION, below) == SEEN_BY_RAYS
         || (WATER_FALLBACK == 0u && (place.found == PICTURE_UNKNOWN || place.found == PICTURE_HIDDEN))
-        || (WATER_SIDES_BY_RAYS && from_side);
+        || (WATER_SIDES_BY_RAYS && (from_side || (below && seen_leaves(place, p_ws, direction_ws))));
     var seen = Seen(vec3f(0.0), 0.0, false);
     let by_rays = WATER_REFRACTION == SEEN_BY_RAYS || WATER_REFLECTION == SEEN_BY_RAYS;
     if across_others || WATER_FALLBACK == 0u || WATER_SIDES_BY_RAYS || by_rays {
         if sends_rays {
-            seen = seen_rays(p_ws, direction_ws, below);
+            seen = seen_by_rays(p_ws, direction_ws, below, n);
         }
     }
     if !sends_rays {
         seen = seen_in_picture(place, p_ws, direction_ws, below);
     }
     return seen;
+}
+
+fn seen_by_rays(p_ws: vec3f, direction_ws: vec3f, below: bool, n: f32) -> Seen {
+    if WATER_OUTLINE > 0u && !ACROSS_WATER && !ACROSS_GLASS {
+        return seen_within(p_ws, direction_ws, below, n);
+    }
+    return seen_rays(p_ws, direction_ws, below);
+}
+
+// Whether a ray comes to a border of the water's own before what a picture shows
+fn seen_leaves(place: PicturePlace, p_ws: vec3f, direction_ws: vec3f) -> bool {
+    if WATER_OUTLINE > 0u {
+        let shown = place.found == PICTURE_SOMETHING || place.found == PICTURE_HIDDEN;
+        return !shown || place.t > water_sides(p_ws, direction_ws).y;
+    }
+    return false;
 }
 
 // Where the ray ends in the picture of its side
