@@ -60,15 +60,16 @@ def test_the_example_of_the_readme_runs(tmp_path: Path, monkeypatch: pytest.Monk
     [
         ("README.md", 1, "pool.png"),
         ("docs/water.md", 0, "pool.png"),
-        ("docs/water.md", 1, ""),
+        ("docs/water.md", 1, "shapes.png"),
         ("docs/water.md", 2, ""),
+        ("docs/water.md", 3, ""),
     ],
 )
 def test_the_examples_of_water_run(
     page: str, number: int, picture: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     blocks = [body for language, body in FENCE.findall((ROOT / page).read_text("utf-8")) if language == "python"]
-    assert len(blocks) == {"README.md": 2, "docs/water.md": 3}[page]
+    assert len(blocks) == {"README.md": 2, "docs/water.md": 4}[page]
     small = blocks[number].replace("size=(800, 600)", "size=(48, 36)")
     assert ("size=(48, 36)" in small) == bool(picture)
     monkeypatch.chdir(tmp_path)
