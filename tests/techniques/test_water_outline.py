@@ -230,3 +230,15 @@ def test_nothing_compiles_when_a_shape_of_one_kind_changes(
         monkeypatch.setattr(device.wgpu, maker, lambda **_: pytest.fail("compiled again"))
     for body in BODIES.values():
         renderer.render(scene.replace(objects=[pl.Water(**body)], camera=VIEWS["below"]), size=SIZE)
+
+
+def test_several_bodies_vanish_in_an_even_sky_too(renderer: Renderer) -> None:
+    """Where rays meet what stands for other things, they meet its shape."""
+    bodies = [
+        pl.Water(medium=N, **BODIES["bowl"]),
+        pl.Water(medium=N, center=(2.2, 0.3), **BODIES["box"]),
+        pl.Water(medium=N, center=(-2.1, -0.3), outline=FIVE, depth_m=0.8, floor_scale=0.9),
+    ]
+    for camera in (VIEWS["above"], VIEWS["within"], VIEWS["aside"].replace(fov_deg=80.0)):
+        frame = renderer.render(pl.Scene(camera, pl.Environment.constant(EVEN), objects=bodies), size=SIZE)
+        assert frame.radiance == pytest.approx(np.broadcast_to(EVEN, frame.radiance.shape), rel=1e-4)
