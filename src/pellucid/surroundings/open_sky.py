@@ -19,7 +19,7 @@ import numpy as np
 
 from pellucid.gpu.kernel import ComputeKernel
 from pellucid.optics import fresnel_dielectric
-from pellucid.surroundings.layouts import MAX_WATERS, OPEN_SIZE, OpenSky
+from pellucid.surroundings.layouts import OPEN_SIZE, OpenSky
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -60,8 +60,8 @@ class OpenSkyMaps:
     @property
     def nbytes(self) -> int:
         """Bytes of GPU memory held."""
-        places = int(np.prod(OPEN_SIZE))
-        return 16 * places * MAX_WATERS + (4 * places * RAYS if self._buffers else 0)
+        rays = 4 * int(np.prod(OPEN_SIZE)) * RAYS if self._buffers else 0
+        return int(self._resources["submerged_open"].size) + rays
 
     def update(
         self,
