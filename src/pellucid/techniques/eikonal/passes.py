@@ -340,7 +340,7 @@ class EikonalTechnique:
         glints = [item.gloss > 0.0 and surroundings.light_count > 0 for item in objects]
         marches = [
             (
-                self._march_kernel(body, glints[number]),
+                self._march_kernel(body, glints[number], bool(surroundings.waters)),
                 {**shared, **body.textures.channels[channel], **body.light, "volume": body.uniforms[channel]},
             )
             for number, (body, channel) in enumerate(zip(self.bodies, channels, strict=True))
@@ -372,10 +372,11 @@ class EikonalTechnique:
         """Rays look into the picture only if all objects are content with that."""
         return all(item.surroundings == "screen" for body in self.bodies for item in body.objects)
 
-    def _march_kernel(self, body: Body, lamps: bool) -> ComputeKernel:
+    def _march_kernel(self, body: Body, lamps: bool, waters: bool) -> ComputeKernel:
         prepared = body.prepared
         constants = {**constants_of(prepared, body.quality), "MEETS_MESHES": float(body.meets_meshes)}
         constants |= {"GLINTS": float(lamps), "ROUGH": float(spreading(body.objects[0]))}
+        constants["WATERS"] = float(waters)
         constants["RELAYED"] = float(len(self.bodies) > 1)
         constants["PROXY"] = float(body.hull.kind)
         if prepared.sharp:

@@ -3,6 +3,7 @@
 //!import techniques/eikonal/shaders/surface
 //!import techniques/eikonal/shaders/walk
 
+override WATERS: bool = false;     // the scene holds water that the volume may reach into
 override GRADED: bool = false;     // the first region (or the whole box) has an index that varies
 
 const FIRST_STRIDE = 0.25;         // voxels: leaves the surface that the ray stands on
@@ -10,7 +11,10 @@ const SHORTEST_STRIDE = 0.3;       // voxels
 const CAUTION = 0.9;               // of the sampled distance, whose interpolation is not exactly a distance
 
 fn region_index(region: u32, x: vec3f) -> f32 {
-    if (region >= AMBIENT) { return ambient_index(x); }
+    if (region >= AMBIENT) {
+        if (WATERS) { return ambient_index(x); }
+        return volume.ambient_n;
+    }
     if (GRADED && region == 0u) { return index_at(x); }
     return volume.region_n[region];
 }
