@@ -8,6 +8,7 @@ PY := .venv/bin/python
 QUIET := -qq --disable-pip-version-check
 OUT ?= out/demo
 SUITE ?= eikonal
+WORKERS ?= 2
 
 .NOTPARALLEL:
 .PHONY: help setup adapter demo test test-slow check bench
@@ -40,7 +41,7 @@ demo: .venv/.ready adapter
 	@.venv/bin/pellucid demo --output $(OUT)
 
 test: .venv/.ready-dev adapter
-	@$(PY) -m pytest -m 'not slow'
+	@$(PY) -m pytest -n $(WORKERS) -m 'not slow'
 
 test-slow: .venv/.ready-dev adapter
 	@$(PY) -m pytest

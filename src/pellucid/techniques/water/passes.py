@@ -27,7 +27,7 @@ from pellucid.techniques.water.caustics import WaterLight
 from pellucid.techniques.water.glow import WaterGlow
 from pellucid.techniques.water.layouts import WaterParams, WaterViews
 from pellucid.techniques.water.prepare import WaveMaps, parameters, same_surfaces, sources_of, surfaces_of, wave_maps
-from pellucid.techniques.water.region import covered
+from pellucid.techniques.water.region import Rectangle, covered
 from pellucid.techniques.water.ripple_maps import RippleMaps, ripples_for_device
 from pellucid.techniques.water.views import SurfacePictures, hidden_box, needs_pictures, quality_seen_from
 from pellucid.techniques.water.wave_moments import moment_levels
@@ -188,13 +188,7 @@ class WaterTechnique:
             if name == "opaque_depth" or not outside:
                 size = (*targets.size, 1)
                 encoder.copy_texture_to_texture({"texture": drawn}, {"texture": copy}, size)
-        block = block_of(body.quality.shading_rate, surroundings.view) if outside else (1, 1)
-        if block != body.block:
-            body.block, body.params["block"] = block, block
-            record = body.params["block"].reshape(1, 2)
-            self.device.write(body.bindings["water"], record, offset_of(WaterParams, "block"))
-        blocks = -(-targets.size[0] // block[0]), -(-targets.size[1] // block[1])
-        hits = self._target("water_hits", HIT_FORMAT, blocks)
+        self._use_block(body, block_of(body.quality.shading_rate, surroundings.view) if outside else (1, 1))
         bound = {**self._nothing, **body.bindings, **surroundings.bindings, **self._light.bindings(body)}
         bound |= {name: copy for name, (_, copy) in copies.items()}
         quality = quality_seen_from(surroundings.view, body.quality, body.item.level, body.waves.range_m)
@@ -204,45 +198,62 @@ class WaterTechnique:
             bound |= body.pictures.bindings
         sides = needs_pictures(quality) and body.border.shows(body.item, body.waves.limits_m[0], surroundings)
         constants = body.constants(quality, sides)
-        composed = {**constants, **surroundings.shading_constants, **self._across(surroundings)}
-        if block == (1, 1):
-            on_surface = {"scissor": region, "timer": timer}
-            self._pass("find", constants).run(
-                encoder,
-                [hits.create_view()],
-                targets.depth_view,
-                NONE,
-                bindings=bound,
-                label="water search",
-                **on_surface,
-            )
-            bound["water_hits"] = hits
-            self._pass("compose", composed).run(
-                encoder, [targets.color_view], bindings=bound, label="water shade", **on_surface
-            )
+        shading = {**constants, **surroundings.shading_constants, **self._across(surroundings)}
+        given = encoder, targets, region, bound, (constants, shading), timer
+        if body.block == (1, 1):
+            self._see_pixels(*given)
         else:
-            bound["water_blocks"] = self._target("water_blocks", COLOR_FORMAT, blocks)
-            on_blocks = {"scissor": divided(region, block), "timer": timer, "clear": NONE}
-            self._pass("find_sparse", constants).run(
-                encoder, [hits.create_view()], bindings=bound, label="water search", **on_blocks
-            )
-            bound["water_hits"] = hits
-            self._pass("compose", composed).run(
-                encoder, [bound["water_blocks"].create_view()], bindings=bound, label="water shade", **on_blocks
-            )
-            self._pass("widen", constants).run(
-                encoder,
-                [targets.color_view],
-                targets.depth_view,
-                bindings=bound,
-                scissor=region,
-                timer=timer,
-                label="water widen",
-            )
+            self._see_blocks(body.block, *given)
         if body.quality.glow > 0.0:
             self._glow = self._glow or WaterGlow(self.device)
             constants = surroundings.shading_constants
             self._glow.draw(encoder, targets, bound, constants, body.quality.glow, timer)
+
+    def _see_pixels(
+        self,
+        encoder: Any,
+        targets: Targets,
+        region: Rectangle,
+        bound: dict[str, Any],
+        constants: tuple[dict[str, float], dict[str, float]],
+        timer: Any,
+    ) -> None:
+        """A ray for every pixel of a region; `bound` gets its hits. Constants are those of search and shading."""
+        hits = self._target("water_hits", HIT_FORMAT, targets.size)
+        on: dict[str, Any] = {"bindings": bound, "scissor": region, "timer": timer}
+        search = self._pass("find", constants[0])
+        search.run(encoder, [hits.create_view()], targets.depth_view, NONE, label="water search", **on)
+        bound["water_hits"] = hits
+        self._pass("compose", constants[1]).run(encoder, [targets.color_view], label="water shade", **on)
+
+    def _see_blocks(
+        self,
+        block: Block,
+        encoder: Any,
+        targets: Targets,
+        region: Rectangle,
+        bound: dict[str, Any],
+        constants: tuple[dict[str, float], dict[str, float]],
+        timer: Any,
+    ) -> None:
+        """A ray for every block, then what each pixel has of the blocks around it; else like `_see_pixels`."""
+        size = -(-targets.size[0] // block[0]), -(-targets.size[1] // block[1])
+        hits = self._target("water_hits", HIT_FORMAT, size)
+        seen = self._target("water_blocks", COLOR_FORMAT, size)
+        on: dict[str, Any] = {"bindings": bound, "scissor": divided(region, block), "clear": NONE, "timer": timer}
+        self._pass("find_sparse", constants[0]).run(encoder, [hits.create_view()], label="water search", **on)
+        bound["water_hits"] = hits
+        self._pass("compose", constants[1]).run(encoder, [seen.create_view()], label="water shade", **on)
+        bound["water_blocks"] = seen
+        on = {"bindings": bound, "scissor": region, "timer": timer}
+        widen = self._pass("widen", constants[0])
+        widen.run(encoder, [targets.color_view], targets.depth_view, label="water widen", **on)
+
+    def _use_block(self, body: Body, block: Block) -> None:
+        if block != body.block:
+            body.block, body.params["block"] = block, block
+            record = body.params["block"].reshape(1, 2)
+            self.device.write(body.bindings["water"], record, offset_of(WaterParams, "block"))
 
     def _across(self, surroundings: Surroundings) -> dict[str, float]:
         """Rays meet what stands for other things only where there are any."""
