@@ -94,6 +94,7 @@ def _rows() -> dict[str, _Row]:
         "lake": _Row(by("fast", caustics="none"), "refraction and reflection, waves move"),
         "lake_caustics": _Row(by("fast"), "with caustics", against="lake"),
         "lake_glow": _Row(by("fast", glow=1.0), "with caustics and glow", against="lake"),
+        "lake_rate_4": _Row(by("fast", shading_rate=4), "a look for four pixels", against="lake_caustics"),
         "lake_every_pixel": _Row(
             by("fast", shading_rate=1, texture_size=512), "a look for every pixel", against="lake_caustics"
         ),

@@ -147,8 +147,8 @@ _PRESETS: dict[str, dict[str, Any]] = {
         "reflection": "march",
         "march_steps": 8,
         "fallback": "environment",
-        "shading_rate": 6,
-        "texture_size": 384,
+        "shading_rate": 8,
+        "texture_size": 320,
         "caustic_size": 256,
     },
     "mihalik": {
