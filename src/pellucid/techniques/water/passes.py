@@ -199,55 +199,43 @@ class WaterTechnique:
         sides = needs_pictures(quality) and body.border.shows(body.item, body.waves.limits_m[0], surroundings)
         constants = body.constants(quality, sides)
         shading = {**constants, **surroundings.shading_constants, **self._across(surroundings)}
-        given = encoder, targets, region, bound, (constants, shading), timer
-        if body.block == (1, 1):
-            self._see_pixels(*given)
-        else:
-            self._see_blocks(body.block, *given)
+        self._see(encoder, body.block, targets, region, bound, (constants, shading), timer)
         if body.quality.glow > 0.0:
             self._glow = self._glow or WaterGlow(self.device)
             constants = surroundings.shading_constants
             self._glow.draw(encoder, targets, bound, constants, body.quality.glow, timer)
 
-    def _see_pixels(
+    def _see(
         self,
         encoder: Any,
-        targets: Targets,
-        region: Rectangle,
-        bound: dict[str, Any],
-        constants: tuple[dict[str, float], dict[str, float]],
-        timer: Any,
-    ) -> None:
-        """A ray for every pixel of a region; `bound` gets its hits. Constants are those of search and shading."""
-        hits = self._target("water_hits", HIT_FORMAT, targets.size)
-        on: dict[str, Any] = {"bindings": bound, "scissor": region, "timer": timer}
-        search = self._pass("find", constants[0])
-        search.run(encoder, [hits.create_view()], targets.depth_view, NONE, label="water search", **on)
-        bound["water_hits"] = hits
-        self._pass("compose", constants[1]).run(encoder, [targets.color_view], label="water shade", **on)
-
-    def _see_blocks(
-        self,
         block: Block,
-        encoder: Any,
         targets: Targets,
         region: Rectangle,
         bound: dict[str, Any],
         constants: tuple[dict[str, float], dict[str, float]],
         timer: Any,
     ) -> None:
-        """A ray for every block, then what each pixel has of the blocks around it; else like `_see_pixels`."""
+        """A ray for every block of a region, and where those are no pixels, what each pixel has of those around it.
+
+        `bound` gets the hits. Constants are those of search and shading.
+        """
+        shared = block != (1, 1)
         size = -(-targets.size[0] // block[0]), -(-targets.size[1] // block[1])
         hits = self._target("water_hits", HIT_FORMAT, size)
-        seen = self._target("water_blocks", COLOR_FORMAT, size)
-        on: dict[str, Any] = {"bindings": bound, "scissor": divided(region, block), "clear": NONE, "timer": timer}
-        self._pass("find_sparse", constants[0]).run(encoder, [hits.create_view()], label="water search", **on)
+        seen = self._target("water_blocks", COLOR_FORMAT, size).create_view() if shared else targets.color_view
+        on: dict[str, Any] = {"bindings": bound, "scissor": divided(region, block), "timer": timer}
+        search = self._pass("find_sparse" if shared else "find", constants[0])
+        search.run(
+            encoder, [hits.create_view()], None if shared else targets.depth_view, NONE, label="water search", **on
+        )
         bound["water_hits"] = hits
-        self._pass("compose", constants[1]).run(encoder, [seen.create_view()], label="water shade", **on)
-        bound["water_blocks"] = seen
-        on = {"bindings": bound, "scissor": region, "timer": timer}
-        widen = self._pass("widen", constants[0])
-        widen.run(encoder, [targets.color_view], targets.depth_view, label="water widen", **on)
+        shade = self._pass("compose", constants[1])
+        shade.run(encoder, [seen], clear=NONE if shared else None, label="water shade", **on)
+        if shared:
+            bound["water_blocks"] = self._targets["water_blocks"]
+            widen = self._pass("widen", constants[0])
+            on["scissor"] = region
+            widen.run(encoder, [targets.color_view], targets.depth_view, label="water widen", **on)
 
     def _use_block(self, body: Body, block: Block) -> None:
         if block != body.block:
